@@ -1,0 +1,97 @@
+/* options.h - the examples' command line: one table, parsed, printed as help and as provenance.
+   SPDX-License-Identifier: MIT */
+#ifndef OPTIONS_H
+#define OPTIONS_H
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef enum option_type { OPTION_REAL, OPTION_LONG, OPTION_TEXT, OPTION_FLAG } option_type;
+
+/* One option: --name VALUE (or --name alone for a flag). `value` points to a double, a long, a
+   const char * or an int, holding the default. */
+typedef struct option {
+    const char *name;
+    option_type type;
+    void *value;
+    const char *help;
+} option;
+
+/* The current value of o as text, into a buffer of n characters. */
+static inline void option_text(const option *o, char *buffer, size_t n)
+{
+    switch (o->type) {
+    case OPTION_REAL: snprintf(buffer, n, "%.15g", *(double *)o->value); break;
+    case OPTION_LONG: snprintf(buffer, n, "%ld", *(long *)o->value); break;
+    case OPTION_TEXT: snprintf(buffer, n, "%s", *(const char **)o->value); break;
+    case OPTION_FLAG: snprintf(buffer, n, "%s", *(int *)o->value ? "on" : "off"); break;
+    }
+}
+
+static inline void options_help(const char *program, const char *about, const option *o, int n)
+{
+    int i;
+    printf("usage: %s [options]\n%s\n\noptions (default in brackets):\n", program, about);
+    for (i = 0; i < n; i++) {
+        char text[256];
+        option_text(&o[i], text, sizeof text);
+        printf("  --%-20s %s [%s]\n", o[i].name, o[i].help, text);
+    }
+    printf("  --%-20s %s\n", "help", "this text");
+}
+
+/* Sets one option from its text. Returns 0, or -1 after a message naming the value. */
+static inline int option_set(const option *o, const char *text)
+{
+    char *end = NULL;
+    errno = 0;
+    if (o->type == OPTION_REAL) {
+        double v = strtod(text, &end);
+        if (end == text || *end || isnan(v)) goto bad;
+        *(double *)o->value = v;
+    } else if (o->type == OPTION_LONG) {
+        long v = strtol(text, &end, 10);
+        if (end == text || *end || errno) goto bad;
+        *(long *)o->value = v;
+    } else {
+        *(const char **)o->value = text;
+    }
+    return 0;
+bad:
+    fprintf(stderr, "error: --%s needs a%s number, not '%s'\n", o->name,
+            o->type == OPTION_LONG ? " whole" : "", text);
+    return -1;
+}
+
+/* Reads argv into the table. Returns 0 to go on, 1 after --help, -1 after an error message. */
+static inline int options_parse(int argc, char **argv, const char *about, const option *o, int n)
+{
+    int a, i;
+    for (a = 1; a < argc; a++) {
+        const char *name = argv[a];
+        if (!strcmp(name, "--help") || !strcmp(name, "-h")) {
+            options_help(argv[0], about, o, n);
+            return 1;
+        }
+        for (i = 0; i < n; i++)
+            if (!strncmp(name, "--", 2) && !strcmp(name + 2, o[i].name)) break;
+        if (i == n) {
+            fprintf(stderr, "error: unknown option '%s' (see --help)\n", name);
+            return -1;
+        }
+        if (o[i].type == OPTION_FLAG) {
+            *(int *)o[i].value = 1;
+        } else if (a + 1 == argc) {
+            fprintf(stderr, "error: %s needs a value\n", name);
+            return -1;
+        } else if (option_set(&o[i], argv[++a])) {
+            return -1;
+        }
+    }
+    return 0;
+}
+
+#endif

@@ -1,0 +1,2279 @@
+/* mpm.h - the material point method in one header: 3D explicit MUSL with contact.
+   Version 0.1.0. SPDX-License-Identifier: MIT
+
+   DO THIS
+     In ONE source file:                          everywhere else:
+       #define MPM_IMPLEMENTATION                   #include "mpm.h"
+       #include "mpm.h"
+     Describe the grid (mpm_desc), give it memory (mpm_init), fill bodies (mpm_body_add), then
+     call the phases of the step in a loop - they are listed, in order, in mpm_step below.
+     Link with -lm.
+
+   WHAT IT DOES NOT DO
+     No heat conduction, no fracture, no oxide film, no implicit time integration, no threads,
+     no adaptive grid. It never prints, exits, aborts or allocates inside a step: every routine
+     that can fail returns an mpm_status and leaves the reason in an mpm_fault.
+
+   A COMPLETE PROGRAM
+       #define MPM_IMPLEMENTATION
+       #include "mpm.h"
+       int main(void) {
+           mpm_world w;
+           mpm_shape ball = mpm_sphere(0.5, 0.5, 0.5, 0.2);
+           mpm_body_desc b = mpm_body_desc_default();
+           mpm_desc d = mpm_desc_default();
+           d.cell = 0.1; d.cells[0] = d.cells[1] = d.cells[2] = 10;
+           d.bodies = 1; d.points = mpm_shape_count(&d, &ball, 0.05);
+           b.shape = ball; b.spacing = 0.05; b.density = 1000; b.velocity[2] = 1;
+           if (mpm_init(&w, &d, NULL, 0) != MPM_OK) return 1;
+           if (mpm_body_add(&w, &b) != MPM_OK) return 1;
+           while (w.time < 0.1)
+               if (mpm_step(&w, 0.001) < 0) return 1;
+           mpm_free(&w);
+           return 0;
+       }
+
+   CONFIGURATION (define before including)
+     MPM_FLOAT            GLOBAL  mpm_real is float. Public symbols then end in _f32, so that
+                                  units compiled differently fail to link instead of misbehaving.
+     MPM_STATIC           IMPL    every function is static inline; implies MPM_IMPLEMENTATION.
+     MPM_MALLOC(n), MPM_FREE(p)  IMPL  used only where the caller passes NULL for memory.
+     MPM_BLOCK            IMPL    points per constitutive block (default 64).
+
+   CONVENTIONS
+     Units        any consistent system. um, us, ng is the natural one for cold spray: then stress
+                  is MPa, velocity m/s, energy pJ, energy per area J/m^2. Temperature in K.
+     Axes         x = 0, y = 1, z = 2. In two dimensions the plane is x-z and y is out of it: the
+                  thickness direction in plane strain, the hoop direction in axisymmetry (x = r).
+     Tensors      symmetric: xx yy zz yz xz xy (tensor components, never engineering shear).
+     Stress       Cauchy, tension positive. Pressure p = -tr(stress)/3, compression positive.
+     Rotation     increments are vectors about x, y, z: w_x = (dv_z/dy - dv_y/dz) dt / 2.
+     Time         velocities at t^k; the step takes points from t^k to t^(k+1).
+     Order        bodies are numbered as added; the last one leads ranked contact normals, so add
+                  the substrate last. Points of one body are contiguous and kept in cell order.
+
+   Equation numbers "A n" are those of source A: the thesis this library reproduces (README). */
+#ifndef MPM_H
+#define MPM_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define MPM_VERSION "0.1.0"
+
+#ifdef MPM_FLOAT
+typedef float mpm_real;
+#define MPM_R(x) x##f
+#define MPM_EPSILON 1.1920929e-7f
+#define MPM_DIGITS 9            /* decimal digits that bring every mpm_real back exactly */
+#else
+typedef double mpm_real;
+#define MPM_R(x) x
+#define MPM_EPSILON 2.2204460492503131e-16
+#define MPM_DIGITS 17
+#endif
+
+#ifdef MPM_STATIC
+#ifndef MPM_IMPLEMENTATION
+#define MPM_IMPLEMENTATION
+#endif
+#define MPM_API static inline
+#else
+#define MPM_API extern
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- status and faults --------------------------------------------------------------------- */
+
+/* Every status, its number and its meaning. 0: done. Negative: failed, the state is as it was
+   unless the routine says otherwise. Positive: done, with something worth knowing. */
+#define MPM_STATUS_LIST(X)                                                              \
+    X(MPM_OK, 0, "done")                                                                \
+    X(MPM_ERR_ARGUMENT, -1, "an argument is out of its valid range")                    \
+    X(MPM_ERR_NAN, -2, "a value is not a finite number")                                \
+    X(MPM_ERR_MEMORY, -3, "not enough memory was given or could be had")                \
+    X(MPM_ERR_FULL, -4, "a capacity is exhausted")                                      \
+    X(MPM_ERR_OVERLAP, -5, "two bodies overlap")                                        \
+    X(MPM_ERR_OUTSIDE, -6, "something lies outside the grid")                           \
+    X(MPM_ERR_UNKNOWN, -7, "a name is not known")                                       \
+    X(MPM_ERR_FILE, -8, "a file could not be written or read")                          \
+    X(MPM_ERR_STATE, -9, "a point has left the range of its model")                     \
+    X(MPM_ERR_VERSION, -10, "a file was made by another version or real type")          \
+    X(MPM_CLAMPED, 1, "a value was limited to its valid range")                         \
+    X(MPM_NOT_CONVERGED, 2, "an iteration reached its limit; the last value is usable") \
+    X(MPM_RETIRED, 3, "points left the grid and were retired")
+
+typedef enum mpm_status {
+#define MPM__STATUS_ENUM(name, number, text) name = number,
+    MPM_STATUS_LIST(MPM__STATUS_ENUM)
+#undef MPM__STATUS_ENUM
+    MPM_STATUS_LAST = 4
+} mpm_status;
+
+/* The first thing that went wrong, so that a message can name it. `field` is a static string. */
+typedef struct mpm_fault {
+    mpm_status status;
+    const char *field;  /* what was wrong: "cell", "density of point", ... */
+    mpm_real value;     /* the offending value */
+    long index;         /* point, body or axis it belongs to; -1 for none */
+} mpm_fault;
+
+/* ---- units --------------------------------------------------------------------------------- */
+
+/* A consistent unit system: the SI value of one unit of each base quantity. Temperature is K. */
+typedef struct mpm_units {
+    double length;  /* m per length unit */
+    double mass;    /* kg per mass unit */
+    double time;    /* s per time unit */
+} mpm_units;
+
+MPM_API mpm_units mpm_units_si(void);         /* m, kg, s */
+MPM_API mpm_units mpm_units_um_us_ng(void);   /* um, us, ng = 1e-12 kg: stress in MPa, velocity in m/s */
+MPM_API mpm_units mpm_units_mm_ms_g(void);    /* mm, ms, g: stress in MPa, velocity in m/s */
+
+/* The SI value of one unit of a derived quantity: divide an SI number by it to enter the system. */
+MPM_API double mpm_units_velocity(const mpm_units *u);        /* m/s */
+MPM_API double mpm_units_density(const mpm_units *u);         /* kg/m^3 */
+MPM_API double mpm_units_stress(const mpm_units *u);          /* Pa */
+MPM_API double mpm_units_energy(const mpm_units *u);          /* J */
+MPM_API double mpm_units_specific_energy(const mpm_units *u); /* J/kg */
+MPM_API double mpm_units_area_energy(const mpm_units *u);     /* J/m^2 */
+
+/* ---- the constitutive block ---------------------------------------------------------------- */
+
+/* What a material sees: `count` consecutive points of one body, as plain arrays. The strain
+   increment and the rotation increment are those of the step k -> k+1 and the density is already
+   that of k+1; everything else is the state at k, to be brought to k+1 in place. */
+typedef struct mpm_block {
+    int count;                    /* points, 1 .. MPM_BLOCK */
+    mpm_real dt;                  /* step [time] */
+    mpm_real cell;                /* grid cell edge [length], for bulk viscosity and regularisation */
+    const mpm_real *strain[6];    /* strain increment, xx yy zz yz xz xy (tensor components) */
+    const mpm_real *spin[3];      /* rotation increment about x, y, z [rad] */
+    const mpm_real *density;      /* at k+1 [mass/length^3] */
+    mpm_real *stress[6];          /* Cauchy stress, tension positive */
+    mpm_real *energy;             /* internal energy per mass */
+    mpm_real *temperature;        /* [K] */
+    mpm_real *plastic_strain;     /* effective plastic strain */
+    mpm_real *plastic_rate;       /* effective plastic strain rate of this step [1/time] */
+    mpm_real *plastic_work;       /* integral of flow stress d(plastic strain) [stress] (A 4.15) */
+    mpm_fault *fault;             /* filled by the material when it fails; index within the block */
+} mpm_block;
+
+/* A constitutive update: material points to the caller's parameters. Returns a status; a negative
+   one stops the step, a positive one is counted and passed on. */
+typedef mpm_status (*mpm_stress_fn)(void *material, const mpm_block *block);
+
+/* ---- shapes -------------------------------------------------------------------------------- */
+
+typedef enum mpm_shape_kind {
+    MPM_SHAPE_NONE = 0,
+    MPM_SHAPE_ELLIPSOID,  /* a sphere if the three half axes are equal */
+    MPM_SHAPE_CYLINDER,   /* axis along z */
+    MPM_SHAPE_BOX
+} mpm_shape_kind;
+
+/* A solid given by its centre and half extents [length]. In two dimensions its x-z section. */
+typedef struct mpm_shape {
+    mpm_shape_kind kind;
+    mpm_real center[3];
+    mpm_real half[3];
+} mpm_shape;
+
+MPM_API mpm_shape mpm_sphere(mpm_real x, mpm_real y, mpm_real z, mpm_real radius);
+MPM_API mpm_shape mpm_ellipsoid(mpm_real x, mpm_real y, mpm_real z, mpm_real a, mpm_real b, mpm_real c);
+MPM_API mpm_shape mpm_cylinder(mpm_real x, mpm_real y, mpm_real z_bottom, mpm_real radius, mpm_real height);
+MPM_API mpm_shape mpm_box(mpm_real x0, mpm_real y0, mpm_real z0, mpm_real x1, mpm_real y1, mpm_real z1);
+
+/* 1 if the point (x, y, z) lies inside the shape, else 0. */
+MPM_API int mpm_shape_contains(const mpm_shape *s, mpm_real x, mpm_real y, mpm_real z);
+
+/* ---- the description of a problem ---------------------------------------------------------- */
+
+typedef enum mpm_geometry { MPM_3D = 0, MPM_PLANE_STRAIN, MPM_AXISYMMETRIC } mpm_geometry;
+
+typedef enum mpm_shape_function {
+    MPM_LINEAR = 0,  /* trilinear hexahedra, the thesis's (A 3.20) */
+    MPM_GIMP         /* uGIMP, Bardenhagen and Kober 2004: points are boxes of fixed size */
+} mpm_shape_function;
+
+/* What happens at a side of the grid. */
+typedef enum mpm_side {
+    MPM_SIDE_OPEN = 0,   /* nothing; points that cross it are retired */
+    MPM_SIDE_SYMMETRY,   /* no motion through it: a symmetry or sliding plane */
+    MPM_SIDE_FIXED,      /* no motion at all */
+    MPM_SIDE_WALL        /* a rigid wall: no motion into it, free to leave, Coulomb friction */
+} mpm_side;
+
+/* How two bodies act on each other at a node that carries both. */
+typedef enum mpm_contact_law {
+    MPM_CONTACT_FRICTION = 0, /* approaching: equal normal velocity, Coulomb friction (0: frictionless) */
+    MPM_CONTACT_STICK,        /* approaching: equal velocity (A 3.31); separating: free */
+    MPM_CONTACT_WELD,         /* always equal velocity: one velocity field, as in MPM without contact */
+    MPM_CONTACT_NONE          /* bodies pass through each other */
+} mpm_contact_law;
+
+/* Where the contact normal of a pair of bodies comes from. All are collinear: n_i = -n_j. */
+typedef enum mpm_normal_rule {
+    MPM_NORMAL_RANKED = 0, /* of the higher-numbered body; of the other where that vanishes */
+    MPM_NORMAL_MVG,        /* of the body with the larger volume gradient */
+    MPM_NORMAL_AVERAGE,    /* of the difference of the two volume gradients */
+    MPM_NORMAL_FIXED       /* along z, from the lower- to the higher-numbered body's side */
+} mpm_normal_rule;
+
+/* The problem: grid, geometry, capacities. Start from mpm_desc_default() and set at least cell,
+   cells, points and bodies. */
+typedef struct mpm_desc {
+    mpm_geometry geometry;
+    mpm_shape_function shape;
+    mpm_real origin[3];      /* lowest corner of the grid [length] */
+    mpm_real cell;           /* cell edge [length], > 0 */
+    int32_t cells[3];        /* cells per direction, >= 1; cells[1] is ignored in two dimensions */
+    mpm_side side[6];        /* x low, x high, y low, y high, z low, z high */
+    mpm_real wall_friction;  /* Coulomb coefficient of MPM_SIDE_WALL, >= 0 */
+    mpm_contact_law contact;
+    mpm_normal_rule normal;
+    mpm_real friction;       /* Coulomb coefficient between bodies, >= 0 */
+    mpm_real gravity[3];     /* [length/time^2] */
+    mpm_real mass_cutoff;    /* nodes lighter than this share of a mean point's mass are passed over */
+    int32_t points;          /* capacity, all bodies; see mpm_shape_count */
+    int32_t bodies;          /* capacity */
+    int32_t nodes;           /* capacity of (node, body) pairs; 0: estimated */
+    int user_fields;         /* further mpm_real per point, 0 .. MPM_USER_FIELDS, carried along */
+} mpm_desc;
+
+#define MPM_USER_FIELDS 8
+
+MPM_API mpm_desc mpm_desc_default(void);
+
+/* ---- points -------------------------------------------------------------------------------- */
+
+/* Flags of a point: where on its body it was born. */
+enum {
+    MPM_SURFACE = 1,  /* within one shell of a free face: the points that contact and bond */
+    MPM_TOP = 2,      /* within one spacing of a cylinder's or box's upper face */
+    MPM_BOTTOM = 4,   /* ... of its lower face */
+    MPM_SIDES = 8     /* ... of its circumference */
+};
+
+/* The points of all bodies, one array per field. Body b owns [first, first + count); of these the
+   last count - active are retired: they have left the grid and stay as they were. */
+typedef struct mpm_points {
+    int32_t count;            /* points of all bodies */
+    int32_t capacity;
+    mpm_real *x[3];           /* position [length] */
+    mpm_real *v[3];           /* velocity [length/time] */
+    mpm_real *mass;           /* in axisymmetry the mass of the whole ring */
+    mpm_real *density;        /* [mass/length^3] */
+    mpm_real *stress[6];      /* Cauchy, xx yy zz yz xz xy, tension positive */
+    mpm_real *energy;         /* internal energy per mass */
+    mpm_real *temperature;    /* [K] */
+    mpm_real *plastic_strain; /* effective plastic strain */
+    mpm_real *plastic_rate;   /* its rate in the last step [1/time] */
+    mpm_real *plastic_work;   /* per current volume [stress] */
+    mpm_real *bond;           /* D, the bonding history variable (A 4.3, 4.16) */
+    mpm_real *user[MPM_USER_FIELDS];
+    uint8_t *flags;           /* MPM_SURFACE ... */
+    int32_t *id;              /* number of the point as created: survives sorting */
+} mpm_points;
+
+/* ---- bodies -------------------------------------------------------------------------------- */
+
+/* A body to add: its shape is filled with points on a cubic lattice. */
+typedef struct mpm_body_desc {
+    mpm_shape shape;
+    mpm_real spacing;        /* distance of points [length], 0 < spacing <= cell */
+    mpm_real density;        /* [mass/length^3], > 0 */
+    mpm_real velocity[3];
+    mpm_real temperature;    /* [K] */
+    mpm_stress_fn stress;    /* constitutive update, or NULL for a body without stress */
+    void *material;          /* passed to it */
+    mpm_real wave_p, wave_s; /* longitudinal and shear wave speeds: time step and dampers */
+    int absorb;              /* faces with a viscous damper: MPM_BOTTOM | MPM_SIDES (A 3.45) */
+    mpm_real absorb_a, absorb_b; /* damper factors, normal and tangential (thesis: 1) */
+    mpm_real shell;          /* thickness of the MPM_SURFACE layer in spacings */
+} mpm_body_desc;
+
+MPM_API mpm_body_desc mpm_body_desc_default(void);
+
+typedef struct mpm_body {
+    mpm_body_desc desc;
+    int32_t first, count, active;
+    mpm_real point_mass;     /* mean mass of its points */
+    mpm_real mass[2];        /* mass of the points at the damped bottom and circumference */
+    mpm_real area[2];        /* area of those faces */
+} mpm_body;
+
+/* ---- the grid ------------------------------------------------------------------------------ */
+
+/* One node as one body sees it. Slots exist only where a body has points: memory grows with what
+   bodies occupy. Slots of the same node form a chain, highest body first. */
+typedef struct mpm_node {
+    mpm_real mass;
+    mpm_real momentum[3];  /* at k, then k+1 */
+    mpm_real force[3];     /* internal + external + contact */
+    mpm_real velocity[3];  /* at k+1, mapped back from the updated points (MUSL) */
+    mpm_real gradient[3];  /* mass gradient, filled at contact nodes only */
+    int32_t index;         /* number of the node in the grid */
+    int32_t next;          /* next slot of this node, or -1 */
+    int32_t body;
+    int32_t sides;         /* bit s: on side s of the grid; bit 6: contact */
+} mpm_node;
+
+#define MPM_NODE_CONTACT 64
+
+/* A run: consecutive points of one body that share a base node, so that nodal values are fetched
+   once and points are swept in plain loops. */
+typedef struct mpm_run {
+    int32_t first, count;
+    int32_t base[3];   /* lowest node of the support */
+    int32_t body;
+    int32_t flags;     /* bit d, 3+d: first, last node in direction d is a mirror image; bit 6: contact */
+} mpm_run;
+
+/* Two bodies meeting at a node. */
+typedef struct mpm_pair {
+    int32_t a, b;        /* slots; b belongs to the higher-numbered body */
+    mpm_real normal[3];  /* unit, outward of a, into b; zero where no normal can be told */
+    mpm_real bond;       /* nodal D: at 1 or more the pair holds together when separating */
+} mpm_pair;
+
+/* Where energy and momentum went, summed over the steps. */
+typedef struct mpm_ledger {
+    double absorbed;     /* energy taken by the viscous dampers */
+    double contact;      /* energy lost in contact: nodal impact and friction */
+    double bond;         /* energy lost in holding bonds */
+    double walls;        /* energy lost at rigid walls */
+    double transfer;     /* kinetic energy lost between grid and points */
+    double gravity;      /* work done by gravity */
+    double impulse[3];   /* momentum brought in by dampers, sides and gravity */
+} mpm_ledger;
+
+/* Everything. Plain data: read it, and write it between phases if you know why. */
+typedef struct mpm_world {
+    mpm_desc desc;
+    mpm_real time;
+    long steps;
+    mpm_points points;
+    mpm_body *body;
+    int32_t bodies;
+    mpm_ledger ledger;
+    mpm_fault fault;         /* the first failure since init */
+    long retired;            /* points that left the grid */
+    long sorts;              /* times the points were put back in cell order */
+    long notices;            /* positive statuses returned by materials */
+    long held;               /* pairs that the bond held in the last step */
+
+    int32_t nodes_per_axis[3], ghost; /* grid nodes, ghost layers included */
+    int support[3];          /* nodes a point touches per direction */
+    int32_t *head;           /* per grid node: first slot, or -1 */
+    mpm_node *node;          /* slots */
+    int32_t nodes, node_capacity;
+    mpm_run *run;
+    int32_t *slot;           /* per run: support[0]*support[1]*support[2] slots */
+    int32_t runs, run_capacity, sorted_runs;
+    mpm_pair *pair;
+    int32_t pairs, pair_capacity, pairs_possible;
+    int32_t *key, *order;    /* per point: base node; permutation */
+    mpm_real *field;         /* all real point arrays: field f at field + f * stride */
+    mpm_real *scratch;       /* one array more */
+    size_t stride;
+    int fields;
+    void *memory, *work;     /* the two blocks: points and grid table; nodes, runs, pairs */
+    size_t memory_bytes, work_bytes;
+    int owns_memory, owns_work;
+} mpm_world;
+
+/* ---- setting up ---------------------------------------------------------------------------- */
+
+/* Points that mpm_body_add will create for this shape (those cut off by symmetry planes excluded). */
+MPM_API int32_t mpm_shape_count(const mpm_desc *d, const mpm_shape *s, mpm_real spacing);
+
+/* Checks a description. On failure fills fault (may be NULL) with the field and its value.
+   MPM_ERR_ARGUMENT, MPM_ERR_NAN. */
+MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *fault);
+
+/* Bytes that mpm_init needs for d; 0 if d is invalid or the size overflows. */
+MPM_API size_t mpm_bytes(const mpm_desc *d);
+
+/* Prepares a world in caller's memory (kept until the end; aligned as malloc aligns), or with
+   memory == NULL in memory from MPM_MALLOC. MPM_ERR_ARGUMENT / NAN (see w->fault), MPM_ERR_MEMORY. */
+MPM_API mpm_status mpm_init(mpm_world *w, const mpm_desc *d, void *memory, size_t bytes);
+
+/* Gives back what MPM_MALLOC gave. Safe on a world whose mpm_init failed. */
+MPM_API void mpm_free(mpm_world *w);
+
+/* Fills a shape with points. Numbered in the order of the calls; add the substrate last.
+   MPM_ERR_ARGUMENT / NAN: a field of b; MPM_ERR_OUTSIDE: a point outside the grid (points beyond a
+   symmetry plane are cut off instead); MPM_ERR_OVERLAP: with body fault.index; MPM_ERR_FULL. On
+   failure the world is unchanged. Test: 20_grid. */
+MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *b);
+
+/* Makes room after MPM_ERR_FULL: at least doubles nodes, runs and pairs, in the caller's block
+   (used instead of the old one, which is then free) or with NULL in memory from MPM_MALLOC. The
+   points are untouched; repeat the step from mpm_locate. MPM_ERR_MEMORY. */
+MPM_API mpm_status mpm_grow(mpm_world *w, void *memory, size_t bytes);
+MPM_API size_t mpm_grow_bytes(const mpm_world *w); /* bytes that mpm_grow wants */
+
+/* Longitudinal and shear wave speeds of an isotropic solid (A 3.37, 3.46). E > 0, -1 < nu < 1/2. */
+MPM_API mpm_real mpm_wave_speed_p(mpm_real young, mpm_real poisson, mpm_real density);
+MPM_API mpm_real mpm_wave_speed_s(mpm_real young, mpm_real poisson, mpm_real density);
+
+/* factor * cell / the fastest wave of any body (A 3.37); 0 without one. */
+MPM_API mpm_real mpm_time_step(const mpm_world *w, mpm_real factor);
+
+/* ---- the step, phase by phase -------------------------------------------------------------- */
+
+/* One step: the phases below in their order. Write your own loop to put something between them. */
+MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt);
+
+/* Finds each point's base node, retires points outside the grid, restores cell order when it has
+   decayed, and gives every body slots for the nodes its points touch.
+   MPM_ERR_FULL: see mpm_grow; MPM_ERR_NAN: position of point fault.index. Points are unchanged. */
+MPM_API mpm_status mpm_locate(mpm_world *w);
+
+/* Mass and momentum to the nodes (A 3.23, 3.24), then essential boundary conditions. */
+MPM_API void mpm_p2g(mpm_world *w);
+
+/* Internal forces (A 3.25), gravity (A 3.26) and viscous dampers (A 3.45, 3.46) to the nodes. */
+MPM_API void mpm_forces(mpm_world *w, mpm_real dt);
+
+/* Nodal momentum P += f dt (A 3.28), with boundary conditions. */
+MPM_API void mpm_grid_update(mpm_world *w, mpm_real dt);
+
+/* Lists the pairs of bodies that meet at nodes, with their normals (A 3.30). */
+MPM_API void mpm_contact_find(mpm_world *w);
+
+/* Contact forces on the pairs (A 3.29, 3.31); where pair.bond >= 1 separating pairs are held. */
+MPM_API void mpm_contact_apply(mpm_world *w, mpm_real dt);
+
+/* Velocity of the points from nodal accelerations (A 3.32, first half). */
+MPM_API void mpm_g2p(mpm_world *w, mpm_real dt);
+
+/* Nodal velocities from the updated points (A 3.33, 3.34): the M of MUSL. */
+MPM_API void mpm_musl(mpm_world *w);
+
+/* Strain and rotation increments (A 3.35), density (A 3.36), then the bodies' constitutive update.
+   MPM_ERR_STATE / NAN: fault names field, value and point; the step is then incomplete. */
+MPM_API mpm_status mpm_stress(mpm_world *w, mpm_real dt);
+
+/* Position of the points (A 3.32, second half) and time. Last, since all phases use level k. */
+MPM_API void mpm_move(mpm_world *w, mpm_real dt);
+
+/* ---- looking at it ------------------------------------------------------------------------- */
+
+/* Sums over points [first, first + count) of any body: retired points are included, so that mass
+   is the same for ever. Compensated sums. */
+typedef struct mpm_totals {
+    double mass, momentum[3], kinetic, internal;
+    double temperature_max, plastic_strain_mean, plastic_work_mean; /* means are mass-weighted */
+    double low[3], high[3];  /* extents of the active points' centres */
+    long points, retired;
+} mpm_totals;
+
+MPM_API mpm_totals mpm_body_totals(const mpm_world *w, int32_t body); /* body -1: all */
+MPM_API size_t mpm_memory(const mpm_world *w);                         /* bytes in use */
+MPM_API const char *mpm_status_text(mpm_status s);
+MPM_API const char *mpm_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* MPM_H - stop here if you only want the API */
+
+/* ============================================================================================ */
+#if defined(MPM_IMPLEMENTATION) && !defined(MPM__IMPLEMENTED)
+#define MPM__IMPLEMENTED
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#ifndef MPM_MALLOC
+#include <stdlib.h>
+#define MPM_MALLOC(n) malloc(n)
+#define MPM_FREE(p) free(p)
+#endif
+
+#ifndef MPM_BLOCK
+#define MPM_BLOCK 64
+#endif
+
+/* Inlining turns the support of the shape function and the geometry, passed as constants, into
+   specialised code: one source for linear and GIMP, 3D, plane strain and axisymmetry. */
+#if defined(__GNUC__) || defined(__clang__)
+#define MPM__KERNEL static inline __attribute__((always_inline))
+#else
+#define MPM__KERNEL static inline
+#endif
+
+#define MPM__LANES 32   /* points of a run treated together */
+#define MPM__SUPPORT 27 /* most nodes a point touches */
+#define MPM__PI MPM_R(3.14159265358979323846)
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- small tools --------------------------------------------------------------------------- */
+
+MPM_API const char *mpm_version(void) { return MPM_VERSION; }
+
+MPM_API const char *mpm_status_text(mpm_status s)
+{
+    switch (s) {
+#define MPM__STATUS_TEXT(name, number, text) \
+    case name: return text;
+        MPM_STATUS_LIST(MPM__STATUS_TEXT)
+#undef MPM__STATUS_TEXT
+    default: return "unknown status";
+    }
+}
+
+static inline mpm_real mpm__sqrt(mpm_real a)
+{
+#ifdef MPM_FLOAT
+    return sqrtf(a);
+#else
+    return sqrt(a);
+#endif
+}
+
+/* Finite, told without C99 macros that C++ hides: both comparisons fail for NaN. */
+static inline int mpm__finite(mpm_real a)
+{
+#ifdef MPM_FLOAT
+    return a >= -FLT_MAX && a <= FLT_MAX;
+#else
+    return a >= -DBL_MAX && a <= DBL_MAX;
+#endif
+}
+
+static inline mpm_status mpm__fail(mpm_fault *f, mpm_status s, const char *field, mpm_real value, long index)
+{
+    if (f) {
+        f->status = s;
+        f->field = field;
+        f->value = value;
+        f->index = index;
+    }
+    return s;
+}
+
+static inline mpm_status mpm__want(int ok, mpm_fault *f, const char *field, mpm_real value, long index)
+{
+    if (!mpm__finite(value)) return mpm__fail(f, MPM_ERR_NAN, field, value, index);
+    return ok ? MPM_OK : mpm__fail(f, MPM_ERR_ARGUMENT, field, value, index);
+}
+
+static inline mpm_units mpm__units(double length, double mass, double time)
+{
+    mpm_units u;
+    u.length = length;
+    u.mass = mass;
+    u.time = time;
+    return u;
+}
+
+MPM_API mpm_units mpm_units_si(void) { return mpm__units(1, 1, 1); }
+MPM_API mpm_units mpm_units_um_us_ng(void) { return mpm__units(1e-6, 1e-12, 1e-6); }
+MPM_API mpm_units mpm_units_mm_ms_g(void) { return mpm__units(1e-3, 1e-3, 1e-3); }
+
+MPM_API double mpm_units_velocity(const mpm_units *u) { return u->length / u->time; }
+MPM_API double mpm_units_density(const mpm_units *u) { return u->mass / (u->length * u->length * u->length); }
+MPM_API double mpm_units_stress(const mpm_units *u) { return u->mass / (u->length * u->time * u->time); }
+MPM_API double mpm_units_energy(const mpm_units *u)
+{
+    return u->mass * u->length * u->length / (u->time * u->time);
+}
+MPM_API double mpm_units_specific_energy(const mpm_units *u)
+{
+    return u->length * u->length / (u->time * u->time);
+}
+MPM_API double mpm_units_area_energy(const mpm_units *u) { return u->mass / (u->time * u->time); }
+
+MPM_API mpm_real mpm_wave_speed_p(mpm_real young, mpm_real poisson, mpm_real density)
+{
+    return mpm__sqrt(young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson) * density));
+}
+
+MPM_API mpm_real mpm_wave_speed_s(mpm_real young, mpm_real poisson, mpm_real density)
+{
+    return mpm__sqrt(young / (2 * (1 + poisson) * density));
+}
+
+/* ---- shapes -------------------------------------------------------------------------------- */
+
+static inline mpm_shape mpm__shape(mpm_shape_kind kind, const mpm_real *low, const mpm_real *high)
+{
+    mpm_shape s;
+    int d;
+    s.kind = kind;
+    for (d = 0; d < 3; d++) {
+        s.center[d] = (low[d] + high[d]) / 2;
+        s.half[d] = (high[d] - low[d]) / 2;
+    }
+    return s;
+}
+
+MPM_API mpm_shape mpm_ellipsoid(mpm_real x, mpm_real y, mpm_real z, mpm_real a, mpm_real b, mpm_real c)
+{
+    mpm_shape s;
+    s.kind = MPM_SHAPE_ELLIPSOID;
+    s.center[0] = x;
+    s.center[1] = y;
+    s.center[2] = z;
+    s.half[0] = a;
+    s.half[1] = b;
+    s.half[2] = c;
+    return s;
+}
+
+MPM_API mpm_shape mpm_sphere(mpm_real x, mpm_real y, mpm_real z, mpm_real radius)
+{
+    return mpm_ellipsoid(x, y, z, radius, radius, radius);
+}
+
+MPM_API mpm_shape mpm_cylinder(mpm_real x, mpm_real y, mpm_real z_bottom, mpm_real radius, mpm_real height)
+{
+    mpm_real low[3], high[3];
+    low[0] = x - radius;
+    low[1] = y - radius;
+    low[2] = z_bottom;
+    high[0] = x + radius;
+    high[1] = y + radius;
+    high[2] = z_bottom + height;
+    return mpm__shape(MPM_SHAPE_CYLINDER, low, high);
+}
+
+MPM_API mpm_shape mpm_box(mpm_real x0, mpm_real y0, mpm_real z0, mpm_real x1, mpm_real y1, mpm_real z1)
+{
+    mpm_real low[3], high[3];
+    low[0] = x0;
+    low[1] = y0;
+    low[2] = z0;
+    high[0] = x1;
+    high[1] = y1;
+    high[2] = z1;
+    return mpm__shape(MPM_SHAPE_BOX, low, high);
+}
+
+/* The section of s in the plane of a two-dimensional problem: y no longer matters. */
+static inline int mpm__contains(const mpm_shape *s, const mpm_real *x, int flat, mpm_real shrink)
+{
+    mpm_real q[3];
+    int d;
+    for (d = 0; d < 3; d++) {
+        mpm_real half = s->half[d] - shrink;
+        if (half <= 0) return 0;
+        q[d] = (d == 1 && flat) ? 0 : (x[d] - s->center[d]) / half;
+    }
+    switch (s->kind) {
+    case MPM_SHAPE_ELLIPSOID: return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] <= 1;
+    case MPM_SHAPE_CYLINDER: return q[0] * q[0] + q[1] * q[1] <= 1 && q[2] >= -1 && q[2] <= 1;
+    case MPM_SHAPE_BOX: return q[0] >= -1 && q[0] <= 1 && q[1] >= -1 && q[1] <= 1 && q[2] >= -1 && q[2] <= 1;
+    default: return 0;
+    }
+}
+
+MPM_API int mpm_shape_contains(const mpm_shape *s, mpm_real x, mpm_real y, mpm_real z)
+{
+    mpm_real q[3];
+    q[0] = x;
+    q[1] = y;
+    q[2] = z;
+    return mpm__contains(s, q, 0, 0);
+}
+
+static inline int mpm__flat(const mpm_desc *d) { return d->geometry != MPM_3D; }
+
+static inline mpm_real mpm__grid_high(const mpm_desc *d, int axis)
+{
+    return d->origin[axis] + (mpm_real)d->cells[axis] * d->cell;
+}
+
+/* A walk over the lattice points of a shape, in order of z, y, x. The lattice is symmetric about
+   the centre; a cylinder's or box's last layer lies half a spacing below its upper face. */
+typedef struct mpm__lattice {
+    int32_t n[3], i[3];
+    mpm_real start[3], spacing;
+} mpm__lattice;
+
+static inline mpm__lattice mpm__lattice_begin(const mpm_desc *d, const mpm_shape *s, mpm_real spacing)
+{
+    mpm__lattice l;
+    int a;
+    l.spacing = spacing;
+    for (a = 0; a < 3; a++) {
+        mpm_real across = s->half[a] / spacing;
+        if (s->kind == MPM_SHAPE_BOX || (s->kind == MPM_SHAPE_CYLINDER && a == 2))
+            l.n[a] = (int32_t)(2 * across + MPM_R(0.5));
+        else
+            l.n[a] = 2 * (int32_t)(across + 1);
+        if (l.n[a] < 1) l.n[a] = 1;
+        l.start[a] = s->center[a] - MPM_R(0.5) * (mpm_real)(l.n[a] - 1) * spacing;
+        l.i[a] = 0;
+    }
+    if (s->kind != MPM_SHAPE_ELLIPSOID)
+        l.start[2] = s->center[2] + s->half[2] - ((mpm_real)l.n[2] - MPM_R(0.5)) * spacing;
+    if (mpm__flat(d)) {
+        l.n[1] = 1;
+        l.start[1] = 0;
+    }
+    l.i[0] = -1;
+    return l;
+}
+
+/* The next lattice point that belongs to the shape and is not cut off by a symmetry plane. */
+static inline int mpm__lattice_next(mpm__lattice *l, const mpm_desc *d, const mpm_shape *s, mpm_real *x)
+{
+    for (;;) {
+        int a, cut = 0;
+        for (a = 0; ++l->i[a] == l->n[a]; a++) {
+            if (a == 2) return 0;
+            l->i[a] = 0;
+        }
+        for (a = 0; a < 3; a++) {
+            x[a] = l->start[a] + (mpm_real)l->i[a] * l->spacing;
+            if (a == 1 && mpm__flat(d)) continue;
+            if (d->side[2 * a] == MPM_SIDE_SYMMETRY && x[a] < d->origin[a]) cut = 1;
+            if (d->side[2 * a + 1] == MPM_SIDE_SYMMETRY && x[a] > mpm__grid_high(d, a)) cut = 1;
+        }
+        if (cut) continue;
+        /* the lattice itself bounds boxes and the height of cylinders */
+        if (s->kind == MPM_SHAPE_BOX) return 1;
+        if (s->kind == MPM_SHAPE_CYLINDER) {
+            mpm_real q[3];
+            q[0] = x[0];
+            q[1] = x[1];
+            q[2] = s->center[2];
+            if (mpm__contains(s, q, mpm__flat(d), 0)) return 1;
+        } else if (mpm__contains(s, x, mpm__flat(d), 0)) {
+            return 1;
+        }
+    }
+}
+
+MPM_API int32_t mpm_shape_count(const mpm_desc *d, const mpm_shape *s, mpm_real spacing)
+{
+    mpm__lattice l;
+    mpm_real x[3];
+    int32_t n = 0;
+    int a;
+    if (!(spacing > 0)) return 0;
+    for (a = 0; a < 3; a++)
+        if (!(s->half[a] > 0 && s->half[a] / spacing < 1e6)) return 0;
+    l = mpm__lattice_begin(d, s, spacing);
+    while (mpm__lattice_next(&l, d, s, x)) n++;
+    return n;
+}
+
+/* ---- describing a problem ------------------------------------------------------------------ */
+
+MPM_API mpm_desc mpm_desc_default(void)
+{
+    mpm_desc d;
+    memset(&d, 0, sizeof d);
+    d.cells[0] = d.cells[1] = d.cells[2] = 1;
+    d.mass_cutoff = MPM_EPSILON * 4096;
+    return d;
+}
+
+MPM_API mpm_body_desc mpm_body_desc_default(void)
+{
+    mpm_body_desc b;
+    memset(&b, 0, sizeof b);
+    b.temperature = 298;
+    b.absorb_a = b.absorb_b = 1;
+    b.shell = 1;
+    return b;
+}
+
+MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *f)
+{
+    mpm_status s;
+    double nodes = 1;
+    int a;
+    if ((s = mpm__want(d->cell > 0, f, "cell", d->cell, -1)) != MPM_OK) return s;
+    for (a = 0; a < 3; a++) {
+        if ((s = mpm__want(1, f, "origin", d->origin[a], a)) != MPM_OK) return s;
+        if ((s = mpm__want(1, f, "gravity", d->gravity[a], a)) != MPM_OK) return s;
+        if ((s = mpm__want(d->cells[a] >= 1, f, "cells", (mpm_real)d->cells[a], a)) != MPM_OK) return s;
+        nodes *= d->cells[a] + 3.0;
+    }
+    for (a = 0; a < 6; a++)
+        if ((s = mpm__want(d->side[a] >= MPM_SIDE_OPEN && d->side[a] <= MPM_SIDE_WALL, f, "side",
+                           (mpm_real)d->side[a], a)) != MPM_OK)
+            return s;
+    if ((s = mpm__want(nodes < 2147483647.0, f, "cells in all", (mpm_real)nodes, -1)) != MPM_OK) return s;
+    if ((s = mpm__want(d->points >= 1, f, "points", (mpm_real)d->points, -1)) != MPM_OK) return s;
+    if ((s = mpm__want(d->bodies >= 1, f, "bodies", (mpm_real)d->bodies, -1)) != MPM_OK) return s;
+    if ((s = mpm__want(d->nodes >= 0, f, "nodes", (mpm_real)d->nodes, -1)) != MPM_OK) return s;
+    if ((s = mpm__want(d->friction >= 0, f, "friction", d->friction, -1)) != MPM_OK) return s;
+    if ((s = mpm__want(d->wall_friction >= 0, f, "wall_friction", d->wall_friction, -1)) != MPM_OK) return s;
+    if ((s = mpm__want(d->mass_cutoff >= 0, f, "mass_cutoff", d->mass_cutoff, -1)) != MPM_OK) return s;
+    if ((s = mpm__want(d->user_fields >= 0 && d->user_fields <= MPM_USER_FIELDS, f, "user_fields",
+                       (mpm_real)d->user_fields, -1)) != MPM_OK)
+        return s;
+    if (d->geometry == MPM_AXISYMMETRIC && !(d->origin[0] >= 0))
+        return mpm__fail(f, MPM_ERR_ARGUMENT, "origin of r", d->origin[0], 0);
+    return MPM_OK;
+}
+
+/* ---- memory -------------------------------------------------------------------------------- */
+
+#define MPM__ALIGN 64
+#define MPM__NAMED_FIELDS 20 /* x v mass density stress energy temperature plastic_* bond */
+
+/* Size arithmetic that sticks at the top instead of wrapping around. */
+static inline size_t mpm__add(size_t a, size_t b) { return a > (size_t)-1 - b ? (size_t)-1 : a + b; }
+static inline size_t mpm__mul(size_t a, size_t b) { return b && a > (size_t)-1 / b ? (size_t)-1 : a * b; }
+
+/* Takes n items of `size` bytes from a block, aligned; with base == NULL it only counts. */
+static inline void *mpm__carve(char *base, size_t *used, size_t n, size_t size)
+{
+    size_t at = mpm__add(*used, MPM__ALIGN - 1) / MPM__ALIGN * MPM__ALIGN;
+    *used = mpm__add(at, mpm__mul(n, size));
+    return base ? base + at : NULL;
+}
+
+static inline void mpm__grid_sizes(mpm_world *w)
+{
+    int a;
+    w->ghost = w->desc.shape == MPM_GIMP ? 1 : 0;
+    for (a = 0; a < 3; a++) {
+        w->support[a] = w->ghost ? 3 : 2;
+        w->nodes_per_axis[a] = w->desc.cells[a] + 1 + 2 * w->ghost;
+    }
+    if (mpm__flat(&w->desc)) {
+        w->support[1] = 1;
+        w->nodes_per_axis[1] = 1;
+    }
+}
+
+static inline size_t mpm__grid_nodes(const mpm_world *w)
+{
+    return (size_t)w->nodes_per_axis[0] * (size_t)w->nodes_per_axis[1] * (size_t)w->nodes_per_axis[2];
+}
+
+/* Lays out the first block: points and the grid table. Returns its size. Field strides are an odd
+   number of cache lines, so that fields of one point do not compete for the same cache set. */
+static inline size_t mpm__layout_points(mpm_world *w, char *base)
+{
+    mpm_points *p = &w->points;
+    size_t used = 0, n = (size_t)w->desc.points, lines = (n * sizeof(mpm_real) + MPM__ALIGN - 1) / MPM__ALIGN;
+    mpm_real *f;
+    int i;
+    w->fields = MPM__NAMED_FIELDS + w->desc.user_fields;
+    w->stride = (lines | 1) * (MPM__ALIGN / sizeof(mpm_real));
+    w->body = (mpm_body *)mpm__carve(base, &used, (size_t)w->desc.bodies, sizeof(mpm_body));
+    w->field = (mpm_real *)mpm__carve(base, &used, mpm__mul(w->stride, (size_t)w->fields), sizeof(mpm_real));
+    w->scratch = (mpm_real *)mpm__carve(base, &used, w->stride, sizeof(mpm_real));
+    p->id = (int32_t *)mpm__carve(base, &used, n, sizeof(int32_t));
+    p->flags = (uint8_t *)mpm__carve(base, &used, n, 1);
+    w->key = (int32_t *)mpm__carve(base, &used, n, sizeof(int32_t));
+    w->order = (int32_t *)mpm__carve(base, &used, n, sizeof(int32_t));
+    w->head = (int32_t *)mpm__carve(base, &used, mpm__grid_nodes(w), sizeof(int32_t));
+    if (!base) return used;
+    f = w->field;
+    for (i = 0; i < 3; i++) p->x[i] = f + (size_t)i * w->stride;
+    for (i = 0; i < 3; i++) p->v[i] = f + (size_t)(3 + i) * w->stride;
+    for (i = 0; i < 6; i++) p->stress[i] = f + (size_t)(6 + i) * w->stride;
+    p->mass = f + 12 * w->stride;
+    p->density = f + 13 * w->stride;
+    p->energy = f + 14 * w->stride;
+    p->temperature = f + 15 * w->stride;
+    p->plastic_strain = f + 16 * w->stride;
+    p->plastic_rate = f + 17 * w->stride;
+    p->plastic_work = f + 18 * w->stride;
+    p->bond = f + 19 * w->stride;
+    for (i = 0; i < w->desc.user_fields; i++) p->user[i] = f + (size_t)(MPM__NAMED_FIELDS + i) * w->stride;
+    return used;
+}
+
+/* Lays out the second block for a number of slots: there are as many runs as slots. */
+static inline size_t mpm__layout_work(mpm_world *w, char *base, int32_t nodes)
+{
+    size_t used = 0, n = (size_t)nodes;
+    size_t reach = (size_t)w->support[0] * (size_t)w->support[1] * (size_t)w->support[2];
+    w->node_capacity = w->run_capacity = w->pair_capacity = nodes;
+    w->node = (mpm_node *)mpm__carve(base, &used, n, sizeof(mpm_node));
+    w->run = (mpm_run *)mpm__carve(base, &used, n, sizeof(mpm_run));
+    w->slot = (int32_t *)mpm__carve(base, &used, mpm__mul(n, reach), sizeof(int32_t));
+    w->pair = (mpm_pair *)mpm__carve(base, &used, n, sizeof(mpm_pair));
+    return used;
+}
+
+/* A first guess of the slots needed; mpm_body_add corrects it where it may. */
+static inline int32_t mpm__guess_nodes(const mpm_desc *d)
+{
+    return d->nodes ? d->nodes : d->points / 8 + 256;
+}
+
+MPM_API size_t mpm_bytes(const mpm_desc *d)
+{
+    mpm_world w;
+    size_t n;
+    if (mpm_desc_check(d, NULL) != MPM_OK) return 0;
+    memset(&w, 0, sizeof w);
+    w.desc = *d;
+    mpm__grid_sizes(&w);
+    n = mpm__layout_points(&w, NULL);
+    n = mpm__add(mpm__add(n, MPM__ALIGN), mpm__layout_work(&w, NULL, mpm__guess_nodes(d)));
+    return n == (size_t)-1 ? 0 : n;
+}
+
+MPM_API size_t mpm_memory(const mpm_world *w) { return w->memory_bytes + w->work_bytes; }
+
+MPM_API mpm_status mpm_init(mpm_world *w, const mpm_desc *d, void *memory, size_t bytes)
+{
+    size_t points, work, i, nodes;
+    mpm_status s;
+    memset(w, 0, sizeof *w);
+    w->fault.index = -1;
+    if ((s = mpm_desc_check(d, &w->fault)) != MPM_OK) return s;
+    w->desc = *d;
+    if (mpm__flat(d)) {
+        w->desc.cells[1] = 1;
+        w->desc.side[2] = w->desc.side[3] = MPM_SIDE_OPEN;
+    }
+    mpm__grid_sizes(w);
+    points = mpm__add(mpm__layout_points(w, NULL), MPM__ALIGN) / MPM__ALIGN * MPM__ALIGN;
+    work = mpm__layout_work(w, NULL, mpm__guess_nodes(d));
+    if (mpm__add(points, work) == (size_t)-1)
+        return mpm__fail(&w->fault, MPM_ERR_MEMORY, "points", (mpm_real)d->points, -1);
+    if (memory) {
+        if (bytes < points + work)
+            return mpm__fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
+        w->memory = memory;
+        w->work = (char *)memory + points;
+    } else {
+        w->memory = MPM_MALLOC(points);
+        w->work = w->memory ? MPM_MALLOC(work) : NULL;
+        w->owns_memory = w->owns_work = 1;
+        if (!w->work) {
+            mpm_free(w);
+            return mpm__fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)(points + work), -1);
+        }
+    }
+    w->memory_bytes = points;
+    w->work_bytes = work;
+    memset(w->memory, 0, points);
+    mpm__layout_points(w, (char *)w->memory);
+    mpm__layout_work(w, (char *)w->work, mpm__guess_nodes(d));
+    w->points.capacity = d->points;
+    for (i = 0, nodes = mpm__grid_nodes(w); i < nodes; i++) w->head[i] = -1;
+    return MPM_OK;
+}
+
+MPM_API void mpm_free(mpm_world *w)
+{
+    if (w->owns_memory && w->memory) MPM_FREE(w->memory);
+    if (w->owns_work && w->work) MPM_FREE(w->work);
+    w->memory = w->work = NULL;
+    w->owns_memory = w->owns_work = 0;
+    w->points.count = 0;
+    w->bodies = 0;
+}
+
+static inline int32_t mpm__grown(const mpm_world *w)
+{
+    int32_t need = w->pairs_possible > w->node_capacity ? w->pairs_possible : w->node_capacity;
+    return need > 1000000000 ? 2000000000 : 2 * need;
+}
+
+MPM_API size_t mpm_grow_bytes(const mpm_world *w)
+{
+    mpm_world copy = *w;
+    return mpm__layout_work(&copy, NULL, mpm__grown(w));
+}
+
+MPM_API mpm_status mpm_grow(mpm_world *w, void *memory, size_t bytes)
+{
+    size_t need = mpm_grow_bytes(w);
+    void *block = memory ? memory : MPM_MALLOC(need);
+    if (!block || (memory && bytes < need))
+        return mpm__fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)need, -1);
+    if (w->owns_work) MPM_FREE(w->work);
+    w->work = block;
+    w->work_bytes = need;
+    w->owns_work = memory == NULL;
+    mpm__layout_work(w, (char *)block, mpm__grown(w));
+    w->nodes = w->runs = w->pairs = 0;
+    return MPM_OK;
+}
+
+/* ---- bodies -------------------------------------------------------------------------------- */
+
+static inline mpm_status mpm__body_check(const mpm_world *w, const mpm_body_desc *b, mpm_fault *f)
+{
+    const mpm_shape *s = &b->shape;
+    mpm_status st;
+    int a;
+    if (w->bodies >= w->desc.bodies)
+        return mpm__fail(f, MPM_ERR_FULL, "bodies", (mpm_real)w->desc.bodies, w->bodies);
+    if ((st = mpm__want(s->kind != MPM_SHAPE_NONE, f, "shape", (mpm_real)s->kind, -1)) != MPM_OK) return st;
+    for (a = 0; a < 3; a++) {
+        if ((st = mpm__want(1, f, "shape.center", s->center[a], a)) != MPM_OK) return st;
+        if ((st = mpm__want(s->half[a] > 0, f, "shape.half", s->half[a], a)) != MPM_OK) return st;
+        if ((st = mpm__want(1, f, "velocity", b->velocity[a], a)) != MPM_OK) return st;
+    }
+    if ((st = mpm__want(b->spacing > 0, f, "spacing", b->spacing, -1)) != MPM_OK) return st;
+    if (b->spacing > w->desc.cell * (1 + 16 * MPM_EPSILON))
+        return mpm__fail(f, MPM_ERR_ARGUMENT, "spacing (larger than the cell)", b->spacing, -1);
+    if ((st = mpm__want(b->density > 0, f, "density", b->density, -1)) != MPM_OK) return st;
+    if ((st = mpm__want(b->temperature >= 0, f, "temperature", b->temperature, -1)) != MPM_OK) return st;
+    if ((st = mpm__want(b->wave_p >= 0, f, "wave_p", b->wave_p, -1)) != MPM_OK) return st;
+    if ((st = mpm__want(b->wave_s >= 0, f, "wave_s", b->wave_s, -1)) != MPM_OK) return st;
+    if ((st = mpm__want(b->absorb_a >= 0, f, "absorb_a", b->absorb_a, -1)) != MPM_OK) return st;
+    if ((st = mpm__want(b->absorb_b >= 0, f, "absorb_b", b->absorb_b, -1)) != MPM_OK) return st;
+    if ((st = mpm__want(b->shell >= 0, f, "shell", b->shell, -1)) != MPM_OK) return st;
+    return MPM_OK;
+}
+
+/* Where on its body a new point lies. Damped faces are cuts through a larger body, not surfaces. */
+static inline uint8_t mpm__flags(const mpm_body_desc *b, const mpm_real *x, int flat)
+{
+    const mpm_shape *s = &b->shape;
+    mpm_shape core = *s;
+    int f = 0, d;
+    if (s->kind != MPM_SHAPE_ELLIPSOID) {
+        mpm_shape wide = *s; /* the circumference alone: without upper and lower face */
+        if (x[2] > s->center[2] + s->half[2] - b->spacing) f |= MPM_TOP;
+        if (x[2] < s->center[2] - s->half[2] + b->spacing) f |= MPM_BOTTOM;
+        wide.half[2] *= 4;
+        if (!mpm__contains(&wide, x, flat, b->spacing)) f |= MPM_SIDES;
+    }
+    if (b->absorb & MPM_BOTTOM) core.center[2] -= 2 * s->half[2], core.half[2] += 2 * s->half[2];
+    if (b->absorb & MPM_SIDES)
+        for (d = 0; d < 2; d++) core.half[d] += 2 * b->shell * b->spacing + s->half[d];
+    if (!mpm__contains(&core, x, flat, b->shell * b->spacing * (1 - 64 * MPM_EPSILON))) f |= MPM_SURFACE;
+    return (uint8_t)f;
+}
+
+/* Mass that a lattice point stands for: a cube, a unit-depth square, or a ring. */
+static inline mpm_real mpm__point_mass(const mpm_desc *d, const mpm_body_desc *b, const mpm_real *x)
+{
+    mpm_real square = b->density * b->spacing * b->spacing;
+    if (d->geometry == MPM_3D) return square * b->spacing;
+    return d->geometry == MPM_AXISYMMETRIC ? 2 * MPM__PI * x[0] * square : square;
+}
+
+/* The share of a cylinder that the symmetry planes leave in the grid. */
+static inline mpm_real mpm__kept(const mpm_desc *d)
+{
+    mpm_real share = 1;
+    int a;
+    if (mpm__flat(d)) return 1;
+    for (a = 0; a < 2; a++)
+        if (d->side[2 * a] == MPM_SIDE_SYMMETRY || d->side[2 * a + 1] == MPM_SIDE_SYMMETRY) share /= 2;
+    return share;
+}
+
+/* The true areas of the damped faces, bottom and circumference (A 3.45, 3.46). */
+static inline void mpm__areas(const mpm_desc *d, mpm_body *b)
+{
+    const mpm_shape *s = &b->desc.shape;
+    mpm_real kept = mpm__kept(d), a = 2 * s->half[0], h = 2 * s->half[2];
+    if (d->geometry == MPM_PLANE_STRAIN) {
+        if (d->side[0] == MPM_SIDE_SYMMETRY) kept = MPM_R(0.5);
+        b->area[0] = a * kept;
+        b->area[1] = 2 * h * kept;
+    } else if (s->kind == MPM_SHAPE_BOX && d->geometry == MPM_3D) {
+        b->area[0] = a * 2 * s->half[1] * kept;
+        b->area[1] = 2 * (a + 2 * s->half[1]) * h * kept;
+    } else {
+        b->area[0] = MPM__PI * s->half[0] * s->half[0] * kept;
+        b->area[1] = 2 * MPM__PI * s->half[0] * h * kept;
+    }
+}
+
+/* The body whose shape contains x, or -1. */
+static inline int32_t mpm__body_at(const mpm_world *w, const mpm_real *x)
+{
+    int32_t b;
+    for (b = 0; b < w->bodies; b++)
+        if (mpm__contains(&w->body[b].desc.shape, x, mpm__flat(&w->desc), 0)) return b;
+    return -1;
+}
+
+/* 1 if x lies in the grid. */
+static inline int mpm__in_grid(const mpm_desc *d, const mpm_real *x)
+{
+    int a;
+    for (a = 0; a < 3; a++) {
+        mpm_real t = (x[a] - d->origin[a]) * (1 / d->cell);
+        if (a == 1 && mpm__flat(d)) continue;
+        if (!(t >= 0 && t < (mpm_real)d->cells[a])) return 0;
+    }
+    return 1;
+}
+
+/* Writes the points of b behind those in the world, without counting them in. */
+static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
+{
+    mpm_points *p = &w->points;
+    const mpm_body_desc *d = &b->desc;
+    mpm__lattice l = mpm__lattice_begin(&w->desc, &d->shape, d->spacing);
+    int32_t i = p->count, other;
+    double mass = 0;
+    mpm_real x[3];
+    int a, flat = mpm__flat(&w->desc);
+    while (mpm__lattice_next(&l, &w->desc, &d->shape, x)) {
+        if (i >= p->capacity) return mpm__fail(f, MPM_ERR_FULL, "points", (mpm_real)p->capacity, -1);
+        for (a = 0; a < 3; a++)
+            if (!mpm__in_grid(&w->desc, x))
+                return mpm__fail(f, MPM_ERR_OUTSIDE, "point of body outside the grid: x, y or z", x[a], w->bodies);
+        if ((other = mpm__body_at(w, x)) >= 0)
+            return mpm__fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
+        for (a = 0; a < w->fields; a++) w->field[(size_t)a * w->stride + (size_t)i] = 0;
+        for (a = 0; a < 3; a++) {
+            p->x[a][i] = x[a];
+            p->v[a][i] = d->velocity[a];
+        }
+        p->mass[i] = mpm__point_mass(&w->desc, d, x);
+        p->density[i] = d->density;
+        p->temperature[i] = d->temperature;
+        p->flags[i] = mpm__flags(d, x, flat);
+        p->id[i] = i;
+        if (p->flags[i] & MPM_BOTTOM) b->mass[0] += p->mass[i];
+        if (p->flags[i] & MPM_SIDES) b->mass[1] += p->mass[i];
+        mass += (double)p->mass[i];
+        i++;
+    }
+    if (i == p->count) return mpm__fail(f, MPM_ERR_ARGUMENT, "shape (holds no point at spacing)", d->spacing, -1);
+    b->first = p->count;
+    b->count = b->active = i - p->count;
+    b->point_mass = (mpm_real)(mass / b->count);
+    return MPM_OK;
+}
+
+/* A body added earlier may stick into the new one without the reverse. */
+static inline int32_t mpm__point_inside(const mpm_world *w, const mpm_shape *s)
+{
+    const mpm_points *p = &w->points;
+    int32_t b, i;
+    for (b = 0; b < w->bodies; b++)
+        for (i = w->body[b].first; i < w->body[b].first + w->body[b].active; i++) {
+            mpm_real x[3];
+            x[0] = p->x[0][i];
+            x[1] = p->x[1][i];
+            x[2] = p->x[2][i];
+            if (mpm__contains(s, x, mpm__flat(&w->desc), 0)) return b;
+        }
+    return -1;
+}
+
+MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *desc)
+{
+    mpm_body b;
+    mpm_status s;
+    int32_t other;
+    memset(&b, 0, sizeof b);
+    if ((s = mpm__body_check(w, desc, &w->fault)) != MPM_OK) return s;
+    if ((other = mpm__point_inside(w, &desc->shape)) >= 0)
+        return mpm__fail(&w->fault, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
+    b.desc = *desc;
+    mpm__areas(&w->desc, &b);
+    if ((s = mpm__fill(w, &b, &w->fault)) != MPM_OK) return s;
+    w->body[w->bodies++] = b;
+    w->points.count += b.count;
+    /* Room for the nodes, with half as much again to spare; caller's memory cannot grow by itself. */
+    for (;;) {
+        s = mpm_locate(w);
+        if (s == MPM_OK && w->owns_work && w->nodes + w->nodes / 2 > w->node_capacity) s = MPM_ERR_FULL;
+        if (s != MPM_ERR_FULL || !w->owns_work) break;
+        if ((s = mpm_grow(w, NULL, 0)) != MPM_OK) break;
+    }
+    if (s < 0) {
+        w->bodies--;
+        w->points.count -= b.count;
+    }
+    return s;
+}
+
+MPM_API mpm_real mpm_time_step(const mpm_world *w, mpm_real factor)
+{
+    mpm_real c = 0;
+    int32_t b;
+    for (b = 0; b < w->bodies; b++)
+        if (w->body[b].desc.wave_p > c) c = w->body[b].desc.wave_p;
+    return c > 0 ? factor * w->desc.cell / c : 0;
+}
+
+/* ---- locate: points in cell order, runs, slots ---------------------------------------------- */
+
+/* Puts point j's fields where point i's are, and the reverse. */
+static inline void mpm__swap_points(mpm_world *w, int32_t i, int32_t j)
+{
+    mpm_points *p = &w->points;
+    int32_t id = p->id[i], key = w->key[i];
+    uint8_t flags = p->flags[i];
+    int f;
+    for (f = 0; f < w->fields; f++) {
+        mpm_real *a = w->field + (size_t)f * w->stride, t = a[i];
+        a[i] = a[j];
+        a[j] = t;
+    }
+    p->id[i] = p->id[j];
+    p->id[j] = id;
+    p->flags[i] = p->flags[j];
+    p->flags[j] = flags;
+    w->key[i] = w->key[j];
+    w->key[j] = key;
+}
+
+/* The base node of every active point of a body, or -1 outside the grid. A point's base is the
+   lowest node it touches: of its cell with linear functions, of the nearest node's lower
+   neighbour with GIMP. */
+static inline void mpm__keys(mpm_world *w, const mpm_body *b)
+{
+    const mpm_desc *d = &w->desc;
+    const mpm_real *x = w->points.x[0], *y = w->points.x[1], *z = w->points.x[2];
+    const mpm_real inv = 1 / d->cell, shift = w->ghost ? MPM_R(0.5) : 0;
+    const mpm_real hx = (mpm_real)d->cells[0], hz = (mpm_real)d->cells[2];
+    const mpm_real ox = d->origin[0], oy = d->origin[1], oz = d->origin[2];
+    const int32_t nx = w->nodes_per_axis[0], ny = w->nodes_per_axis[1];
+    const int flat = mpm__flat(d);
+    const mpm_real hy = (mpm_real)d->cells[1];
+    int32_t i, *key = w->key;
+    for (i = b->first; i < b->first + b->active; i++) {
+        mpm_real tx = (x[i] - ox) * inv, ty = flat ? 0 : (y[i] - oy) * inv, tz = (z[i] - oz) * inv;
+        int inside = (tx >= 0) & (tx < hx) & (ty >= 0) & (ty < hy) & (tz >= 0) & (tz < hz);
+        /* with GIMP truncation of t + 1/2 gives the nearest node, whose lower neighbour is, with
+           the ghost layer counted, of the same number */
+        int32_t ix = (int32_t)(inside ? tx + shift : 0), iz = (int32_t)(inside ? tz + shift : 0);
+        int32_t iy = flat ? 0 : (int32_t)(inside ? ty + shift : 0);
+        key[i] = inside ? (iz * ny + iy) * nx + ix : -1;
+    }
+}
+
+/* Takes points with key -1 out of the active range, in order. A position that is not a number is
+   a failure, found before anything is moved. */
+static inline mpm_status mpm__retire(mpm_world *w, mpm_body *b)
+{
+    mpm_points *p = &w->points;
+    int32_t i;
+    int a;
+    for (i = b->first; i < b->first + b->active; i++)
+        for (a = 0; a < 3 && w->key[i] < 0; a++)
+            if (!mpm__finite(p->x[a][i]))
+                return mpm__fail(&w->fault, MPM_ERR_NAN, "position of point", p->x[a][i], i);
+    for (i = b->first; i < b->first + b->active; i++)
+        while (w->key[i] < 0 && i < b->first + b->active) {
+            mpm__swap_points(w, i, b->first + b->active - 1);
+            b->active--;
+            w->retired++;
+        }
+    return MPM_OK;
+}
+
+/* Counting sort of a body's points by base node. The table of nodes, unused between steps, holds
+   the counts; stable, hence deterministic. */
+static inline void mpm__sort(mpm_world *w, const mpm_body *b)
+{
+    mpm_points *p = &w->points;
+    int32_t i, lo, hi, sum = b->first, *head = w->head, *order = w->order, *spare = (int32_t *)w->scratch;
+    const int32_t from = b->first, to = b->first + b->active;
+    int f;
+    if (from == to) return;
+    lo = hi = w->key[from];
+    for (i = from; i < to; i++) {
+        if (w->key[i] < lo) lo = w->key[i];
+        if (w->key[i] > hi) hi = w->key[i];
+    }
+    for (i = lo; i <= hi; i++) head[i] = 0;
+    for (i = from; i < to; i++) head[w->key[i]]++;
+    for (i = lo; i <= hi; i++) {
+        int32_t n = head[i];
+        head[i] = sum;
+        sum += n;
+    }
+    for (i = from; i < to; i++) order[head[w->key[i]]++] = i;
+    for (i = lo; i <= hi; i++) head[i] = -1;
+    for (f = 0; f < w->fields; f++) {
+        mpm_real *a = w->field + (size_t)f * w->stride;
+        for (i = from; i < to; i++) w->scratch[i] = a[order[i]];
+        memcpy(a + from, w->scratch + from, (size_t)(to - from) * sizeof *a);
+    }
+    for (i = from; i < to; i++) spare[i] = p->id[order[i]];
+    memcpy(p->id + from, spare + from, (size_t)(to - from) * sizeof *spare);
+    for (i = from; i < to; i++) spare[i] = w->key[order[i]];
+    memcpy(w->key + from, spare + from, (size_t)(to - from) * sizeof *spare);
+    for (i = from; i < to; i++) spare[i] = p->flags[order[i]];
+    for (i = from; i < to; i++) p->flags[i] = (uint8_t)spare[i];
+}
+
+/* Runs there would be with the points as they lie. */
+static inline int32_t mpm__count_runs(const mpm_world *w)
+{
+    int32_t b, i, n = 0;
+    for (b = 0; b < w->bodies; b++) {
+        const int32_t from = w->body[b].first, to = from + w->body[b].active;
+        if (to > from) n++;
+        for (i = from + 1; i < to; i++) n += w->key[i] != w->key[i - 1];
+    }
+    return n;
+}
+
+static inline void mpm__grid_reset(mpm_world *w)
+{
+    int32_t s;
+    for (s = 0; s < w->nodes; s++) w->head[w->node[s].index] = -1;
+    w->nodes = w->runs = w->pairs = w->pairs_possible = 0;
+}
+
+/* The slot of a body at a node, made if there is none; -1 if there is no room. */
+static inline int32_t mpm__slot(mpm_world *w, int32_t body, const int32_t *at)
+{
+    const int32_t *n = w->nodes_per_axis;
+    const int32_t index = (at[2] * n[1] + at[1]) * n[0] + at[0];
+    int32_t s, others = 0, sides = 0;
+    mpm_node *node;
+    int d;
+    for (s = w->head[index]; s >= 0; s = w->node[s].next, others++)
+        if (w->node[s].body == body) return s;
+    if (w->nodes == w->node_capacity) return -1;
+    w->pairs_possible += others;
+    s = w->nodes++;
+    node = &w->node[s];
+    memset(node, 0, sizeof *node);
+    for (d = 0; d < 3; d++) {
+        if (d == 1 && mpm__flat(&w->desc)) continue;
+        if (at[d] <= w->ghost && w->desc.side[2 * d]) sides |= 1 << (2 * d);
+        if (at[d] >= n[d] - 1 - w->ghost && w->desc.side[2 * d + 1]) sides |= 1 << (2 * d + 1);
+    }
+    node->index = index;
+    node->body = body;
+    node->sides = sides;
+    node->next = w->head[index];
+    w->head[index] = s;
+    return s;
+}
+
+/* Gives a run its slots. Beyond a symmetry plane there are no nodes: what points lend to a ghost
+   there belongs, mirrored, to the node on this side. */
+static inline int mpm__run_slots(mpm_world *w, mpm_run *r, int32_t *slot)
+{
+    const int *n = w->support;
+    int32_t at[3];
+    int i[3], d, mirrored[3][3];
+    for (d = 0; d < 3; d++) {
+        int last = w->nodes_per_axis[d] - 1 - w->ghost;
+        for (i[0] = 0; i[0] < n[d]; i[0]++) {
+            int g = r->base[d] + i[0];
+            if (g < w->ghost && w->desc.side[2 * d] == MPM_SIDE_SYMMETRY) {
+                g = 2 * w->ghost - g;
+                r->flags |= 1 << d;
+            } else if (g > last && w->desc.side[2 * d + 1] == MPM_SIDE_SYMMETRY) {
+                g = 2 * last - g;
+                r->flags |= 8 << d;
+            }
+            mirrored[d][i[0]] = g;
+        }
+    }
+    for (i[2] = 0; i[2] < n[2]; i[2]++)
+        for (i[1] = 0; i[1] < n[1]; i[1]++)
+            for (i[0] = 0; i[0] < n[0]; i[0]++) {
+                for (d = 0; d < 3; d++) at[d] = mirrored[d][i[d]];
+                if ((*slot++ = mpm__slot(w, r->body, at)) < 0) return 0;
+            }
+    return 1;
+}
+
+MPM_API mpm_status mpm_locate(mpm_world *w)
+{
+    const int32_t nx = w->nodes_per_axis[0], ny = w->nodes_per_axis[1];
+    const int reach = w->support[0] * w->support[1] * w->support[2];
+    int32_t b, i, runs;
+    long retired = w->retired;
+    mpm_status s;
+    mpm__grid_reset(w);
+    for (b = 0; b < w->bodies; b++) {
+        mpm__keys(w, &w->body[b]);
+        if ((s = mpm__retire(w, &w->body[b])) != MPM_OK) return s;
+    }
+    runs = mpm__count_runs(w);
+    if (runs > w->sorted_runs + w->sorted_runs / 4) {
+        for (b = 0; b < w->bodies; b++) mpm__sort(w, &w->body[b]);
+        runs = w->sorted_runs = mpm__count_runs(w);
+        w->sorts++;
+    }
+    for (b = 0; b < w->bodies; b++) {
+        const int32_t to = w->body[b].first + w->body[b].active;
+        for (i = w->body[b].first; i < to;) {
+            mpm_run *r = &w->run[w->runs];
+            const int32_t key = w->key[i];
+            if (w->runs == w->run_capacity) goto full;
+            r->first = i;
+            while (++i < to && w->key[i] == key) {}
+            r->count = i - r->first;
+            r->base[0] = key % nx;
+            r->base[1] = key / nx % ny;
+            r->base[2] = key / nx / ny;
+            r->body = b;
+            r->flags = 0;
+            if (!mpm__run_slots(w, r, w->slot + (size_t)w->runs * (size_t)reach)) goto full;
+            w->runs++;
+        }
+    }
+    if (w->pairs_possible <= w->pair_capacity) return w->retired > retired ? MPM_RETIRED : MPM_OK;
+full:
+    i = w->pairs_possible;
+    mpm__grid_reset(w);
+    w->pairs_possible = i;
+    return mpm__fail(&w->fault, MPM_ERR_FULL, "nodes", (mpm_real)w->node_capacity, -1);
+}
+
+/* ---- shape functions and the sweep over a run ------------------------------------------------ */
+
+/* Shape functions and derivatives, per direction, of up to MPM__LANES points of a run. */
+typedef struct mpm__weights {
+    int n;
+    mpm_real N[3][3][MPM__LANES];
+    mpm_real dN[3][3][MPM__LANES];
+} mpm__weights;
+
+/* One direction: t is the distance from the base node in cells, l the half size of a GIMP point in
+   cells. k = 2: the linear hat (A 3.20). k = 3: the hat averaged over the point (uGIMP). */
+MPM__KERNEL void mpm__weights_axis(mpm__weights *s, int axis, int k, const mpm_real *t, mpm_real l, mpm_real inv)
+{
+    int p, i;
+    for (p = 0; p < s->n; p++) {
+        if (k == 1) {
+            s->N[axis][0][p] = 1;
+            s->dN[axis][0][p] = 0;
+        } else if (k == 2) {
+            s->N[axis][0][p] = 1 - t[p];
+            s->N[axis][1][p] = t[p];
+            s->dN[axis][0][p] = -inv;
+            s->dN[axis][1][p] = inv;
+        } else {
+            for (i = 0; i < 3; i++) {
+                mpm_real e = t[p] - (mpm_real)i, a = e < 0 ? -e : e, sign = e < 0 ? inv : -inv;
+                mpm_real reach = 1 + l - a > 0 ? 1 + l - a : 0;
+                mpm_real outer = reach * reach / (4 * l), inner = 1 - (e * e + l * l) / (2 * l);
+                mpm_real douter = sign * reach / (2 * l), dinner = -e * inv / l;
+                s->N[axis][i][p] = a < l ? inner : (a <= 1 - l ? 1 - a : outer);
+                s->dN[axis][i][p] = a < l ? dinner : (a <= 1 - l ? sign : douter);
+            }
+        }
+    }
+}
+
+/* Weights of points [first, first + n) of run r. */
+MPM__KERNEL void mpm__weigh(const mpm_world *w, const mpm_run *r, int32_t first, int n, int k, int ky,
+                            mpm__weights *s)
+{
+    const mpm_real inv = 1 / w->desc.cell, l = w->body[r->body].desc.spacing * inv / 2;
+    mpm_real t[MPM__LANES];
+    int d, p;
+    s->n = n;
+    for (d = 0; d < 3; d++) {
+        const mpm_real *x = w->points.x[d] + first, o = w->desc.origin[d];
+        const mpm_real base = (mpm_real)(r->base[d] - w->ghost);
+        for (p = 0; p < n; p++) t[p] = (x[p] - o) * inv - base;
+        mpm__weights_axis(s, d, d == 1 ? ky : k, t, l, inv);
+    }
+}
+
+/* The product weights of point p at all nodes of its support. */
+MPM__KERNEL void mpm__products(const mpm__weights *s, int p, int k, int ky, mpm_real *N)
+{
+    int ix, iy, iz;
+    for (iz = 0; iz < k; iz++)
+        for (iy = 0; iy < ky; iy++) {
+            mpm_real yz = s->N[1][iy][p] * s->N[2][iz][p];
+            for (ix = 0; ix < k; ix++) N[(iz * ky + iy) * k + ix] = s->N[0][ix][p] * yz;
+        }
+}
+
+/* ... and their gradients G[0], G[1], G[2]. */
+MPM__KERNEL void mpm__gradients(const mpm__weights *s, int p, int k, int ky, mpm_real G[3][MPM__SUPPORT])
+{
+    int ix, iy, iz;
+    for (iz = 0; iz < k; iz++)
+        for (iy = 0; iy < ky; iy++) {
+            mpm_real yz = s->N[1][iy][p] * s->N[2][iz][p];
+            mpm_real dyz = s->dN[1][iy][p] * s->N[2][iz][p], ydz = s->N[1][iy][p] * s->dN[2][iz][p];
+            for (ix = 0; ix < k; ix++) {
+                const int a = (iz * ky + iy) * k + ix;
+                G[0][a] = s->dN[0][ix][p] * yz;
+                G[1][a] = s->N[0][ix][p] * dyz;
+                G[2][a] = s->N[0][ix][p] * ydz;
+            }
+        }
+}
+
+/* Sum over the support of V N at point p. Summed direction by direction. */
+MPM__KERNEL mpm_real mpm__value(const mpm__weights *s, int p, int k, int ky, const mpm_real *V)
+{
+    mpm_real sum = 0;
+    int ix, iy, iz;
+    for (iz = 0; iz < k; iz++) {
+        mpm_real plane = 0;
+        for (iy = 0; iy < ky; iy++) {
+            mpm_real line = 0;
+            for (ix = 0; ix < k; ix++) line += s->N[0][ix][p] * V[(iz * ky + iy) * k + ix];
+            plane += s->N[1][iy][p] * line;
+        }
+        sum += s->N[2][iz][p] * plane;
+    }
+    return sum;
+}
+
+/* ... and the sums of V grad N: g[0], g[1], g[2]. */
+MPM__KERNEL mpm_real mpm__value_gradient(const mpm__weights *s, int p, int k, int ky, const mpm_real *V, mpm_real *g)
+{
+    mpm_real sum = 0, gx = 0, gy = 0, gz = 0;
+    int ix, iy, iz;
+    for (iz = 0; iz < k; iz++) {
+        mpm_real plane = 0, plane_x = 0, plane_y = 0;
+        for (iy = 0; iy < ky; iy++) {
+            mpm_real line = 0, line_x = 0;
+            for (ix = 0; ix < k; ix++) {
+                line += s->N[0][ix][p] * V[(iz * ky + iy) * k + ix];
+                line_x += s->dN[0][ix][p] * V[(iz * ky + iy) * k + ix];
+            }
+            plane += s->N[1][iy][p] * line;
+            plane_x += s->N[1][iy][p] * line_x;
+            plane_y += s->dN[1][iy][p] * line;
+        }
+        sum += s->N[2][iz][p] * plane;
+        gx += s->N[2][iz][p] * plane_x;
+        gy += s->N[2][iz][p] * plane_y;
+        gz += s->dN[2][iz][p] * plane;
+    }
+    g[0] = gx;
+    g[1] = gy;
+    g[2] = gz;
+    return sum;
+}
+
+MPM__KERNEL const int32_t *mpm__run_nodes(const mpm_world *w, const mpm_run *r)
+{
+    const int reach = w->support[0] * w->support[1] * w->support[2];
+    return w->slot + (size_t)(r - w->run) * (size_t)reach;
+}
+
+/* -1 where node a of a run is the mirror image of its slot and axis d points through the mirror. */
+MPM__KERNEL mpm_real mpm__mirror(const mpm_run *r, int a, int d, int k, int ky)
+{
+    const int i[3] = {a % k, a / k % ky, a / k / ky};
+    const int first = i[d] == 0 && (r->flags >> d & 1);
+    const int last = i[d] == (d == 1 ? ky : k) - 1 && (r->flags >> (3 + d) & 1);
+    return first || last ? MPM_R(-1.0) : MPM_R(1.0);
+}
+
+/* Which vector of a node a sweep fetches or adds to. */
+typedef enum mpm__vector { MPM__MOMENTUM, MPM__FORCE, MPM__VELOCITY, MPM__GRADIENT } mpm__vector;
+
+MPM__KERNEL mpm_real *mpm__node_vector(mpm_node *n, mpm__vector which)
+{
+    switch (which) {
+    case MPM__MOMENTUM: return n->momentum;
+    case MPM__FORCE: return n->force;
+    case MPM__VELOCITY: return n->velocity;
+    default: return n->gradient;
+    }
+}
+
+/* Adds V, summed over points of a run, to its nodes. */
+MPM__KERNEL void mpm__scatter(mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which,
+                              mpm_real V[3][MPM__SUPPORT])
+{
+    const int32_t *slot = mpm__run_nodes(w, r);
+    int a, d;
+    for (a = 0; a < k * ky * k; a++) {
+        mpm_real *to = mpm__node_vector(&w->node[slot[a]], which);
+        for (d = 0; d < 3; d++) to[d] += (r->flags & 63) ? V[d][a] * mpm__mirror(r, a, d, k, ky) : V[d][a];
+    }
+}
+
+/* Fetches a vector of a run's nodes, divided by the nodal mass if per_mass. Nodes lighter than the
+   cutoff give zero. */
+MPM__KERNEL void mpm__gather(const mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which, int per_mass,
+                             mpm_real V[3][MPM__SUPPORT])
+{
+    const int32_t *slot = mpm__run_nodes(w, r);
+    const mpm_real cutoff = w->desc.mass_cutoff * w->body[r->body].point_mass;
+    int a, d;
+    for (a = 0; a < k * ky * k; a++) {
+        mpm_node *n = &w->node[slot[a]];
+        const mpm_real *from = mpm__node_vector(n, which);
+        const mpm_real f = n->mass > cutoff ? (per_mass ? 1 / n->mass : 1) : 0;
+        for (d = 0; d < 3; d++)
+            V[d][a] = (r->flags & 63) ? from[d] * f * mpm__mirror(r, a, d, k, ky) : from[d] * f;
+    }
+}
+
+/* Calls kernel(w, run, ..., k, ky, hoop) for every run, specialised for the support and geometry. */
+#define MPM__EACH_RUN(w, call)                                                      \
+    do {                                                                            \
+        int32_t mpm__i;                                                             \
+        const int mpm__gimp = (w)->ghost, mpm__hoop = (w)->desc.geometry == MPM_AXISYMMETRIC; \
+        const int mpm__plane = mpm__flat(&(w)->desc);                               \
+        for (mpm__i = 0; mpm__i < (w)->runs; mpm__i++) {                            \
+            mpm_run *run = &(w)->run[mpm__i];                                       \
+            if (!mpm__plane && !mpm__gimp) call(2, 2, 0);                           \
+            else if (!mpm__plane) call(3, 3, 0);                                    \
+            else if (!mpm__gimp && !mpm__hoop) call(2, 1, 0);                       \
+            else if (!mpm__gimp) call(2, 1, 1);                                     \
+            else if (!mpm__hoop) call(3, 1, 0);                                     \
+            else call(3, 1, 1);                                                     \
+        }                                                                           \
+    } while (0)
+
+/* Splits a run into pieces of at most MPM__LANES points. */
+#define MPM__EACH_PIECE(r, at, n)                                                                        \
+    for (at = (r)->first; at < (r)->first + (r)->count &&                                                \
+         ((n = (int)((r)->first + (r)->count - at) < MPM__LANES ? (int)((r)->first + (r)->count - at)    \
+                                                                : MPM__LANES) > 0);                      \
+         at += n)
+
+/* ---- boundary conditions --------------------------------------------------------------------- */
+
+/* Essential conditions on a nodal vector: no component through a symmetry plane, none at all at a
+   fixed side. What is taken away is added to `removed`. */
+static inline void mpm__constrain(const mpm_world *w, const mpm_node *n, mpm_real *v, double *removed)
+{
+    int s, d;
+    for (s = 0; s < 6; s++) {
+        if (!(n->sides >> s & 1) || w->desc.side[s] == MPM_SIDE_WALL) continue;
+        for (d = 0; d < 3; d++) {
+            if (w->desc.side[s] == MPM_SIDE_SYMMETRY && d != s / 2) continue;
+            if (removed) removed[d] += (double)v[d];
+            v[d] = 0;
+        }
+    }
+}
+
+/* A rigid wall: takes the momentum into it away, and through friction part of the tangential. */
+static inline void mpm__walls(mpm_world *w, mpm_node *n, mpm_real dt)
+{
+    int s, d;
+    for (s = 0; s < 6; s++) {
+        const int axis = s / 2;
+        mpm_real out, slip = 0, keep, jn, change[3] = {0, 0, 0};
+        if (!(n->sides >> s & 1) || w->desc.side[s] != MPM_SIDE_WALL) continue;
+        out = (s & 1) ? -n->momentum[axis] : n->momentum[axis];
+        if (out >= 0) continue;
+        jn = -out;
+        change[axis] = -n->momentum[axis];
+        for (d = 0; d < 3; d++)
+            if (d != axis) slip += n->momentum[d] * n->momentum[d];
+        slip = mpm__sqrt(slip);
+        keep = slip > w->desc.wall_friction * jn ? 1 - w->desc.wall_friction * jn / slip : 0;
+        for (d = 0; d < 3; d++) {
+            mpm_real before = n->momentum[d];
+            if (d != axis) change[d] = (keep - 1) * before;
+            n->momentum[d] += change[d];
+            n->force[d] += change[d] / dt;
+            w->ledger.impulse[d] += (double)change[d];
+            w->ledger.walls -= (double)(change[d] * (before + n->momentum[d]) / (2 * n->mass));
+        }
+    }
+}
+
+/* ---- the phases ------------------------------------------------------------------------------ */
+
+MPM__KERNEL void mpm__p2g_run(mpm_world *w, const mpm_run *r, int k, int ky, int musl)
+{
+    const mpm_points *q = &w->points;
+    const int32_t *slot = mpm__run_nodes(w, r);
+    mpm_real M[MPM__SUPPORT] = {0}, P[3][MPM__SUPPORT] = {{0}}, N[MPM__SUPPORT];
+    mpm__weights s;
+    int32_t at;
+    int n, p, a;
+    MPM__EACH_PIECE(r, at, n) {
+        mpm__weigh(w, r, at, n, k, ky, &s);
+        for (p = 0; p < n; p++) {
+            const mpm_real m = q->mass[at + p];
+            const mpm_real px = m * q->v[0][at + p], py = m * q->v[1][at + p], pz = m * q->v[2][at + p];
+            mpm__products(&s, p, k, ky, N);
+            for (a = 0; a < k * ky * k; a++) {
+                if (!musl) M[a] += m * N[a];
+                P[0][a] += px * N[a];
+                P[1][a] += py * N[a];
+                P[2][a] += pz * N[a];
+            }
+        }
+    }
+    if (!musl)
+        for (a = 0; a < k * ky * k; a++) w->node[slot[a]].mass += M[a];
+    mpm__scatter(w, r, k, ky, musl ? MPM__VELOCITY : MPM__MOMENTUM, P);
+}
+
+MPM_API void mpm_p2g(mpm_world *w)
+{
+    int32_t i;
+#define MPM__CALL(k, ky, hoop) mpm__p2g_run(w, run, k, ky, 0)
+    MPM__EACH_RUN(w, MPM__CALL);
+#undef MPM__CALL
+    for (i = 0; i < w->nodes; i++)
+        if (w->node[i].sides) mpm__constrain(w, &w->node[i], w->node[i].momentum, NULL);
+}
+
+MPM__KERNEL void mpm__forces_run(mpm_world *w, const mpm_run *r, int k, int ky, int hoop)
+{
+    const mpm_points *q = &w->points;
+    mpm_real F[3][MPM__SUPPORT] = {{0}}, G[3][MPM__SUPPORT], N[MPM__SUPPORT];
+    mpm__weights s;
+    int32_t at;
+    int n, p, a;
+    MPM__EACH_PIECE(r, at, n) {
+        mpm__weigh(w, r, at, n, k, ky, &s);
+        for (p = 0; p < n; p++) {
+            const int32_t i = at + p;
+            const mpm_real V = -q->mass[i] / q->density[i];
+            const mpm_real xx = V * q->stress[0][i], yy = V * q->stress[1][i], zz = V * q->stress[2][i];
+            const mpm_real yz = V * q->stress[3][i], xz = V * q->stress[4][i], xy = V * q->stress[5][i];
+            mpm__gradients(&s, p, k, ky, G);
+            for (a = 0; a < k * ky * k; a++) {
+                F[0][a] += xx * G[0][a] + xy * G[1][a] + xz * G[2][a];
+                F[1][a] += xy * G[0][a] + yy * G[1][a] + yz * G[2][a];
+                F[2][a] += xz * G[0][a] + yz * G[1][a] + zz * G[2][a];
+            }
+            if (hoop) { /* the hoop stress pulls the ring inwards */
+                const mpm_real pull = yy / q->x[0][i];
+                mpm__products(&s, p, k, ky, N);
+                for (a = 0; a < k * ky * k; a++) F[0][a] += pull * N[a];
+            }
+        }
+    }
+    mpm__scatter(w, r, k, ky, MPM__FORCE, F);
+}
+
+/* Viscous dampers of one run: traction -a rho Vp v_n - b rho Vs v_t at the points of the damped
+   faces, times the area they represent: of the true face, their share of its mass. The velocity is
+   the grid's at the point, so that the damper takes energy and nothing else. */
+MPM__KERNEL void mpm__absorb_run(mpm_world *w, const mpm_run *r, int k, int ky, mpm_real dt)
+{
+    const mpm_points *q = &w->points;
+    const mpm_body *b = &w->body[r->body];
+    const mpm_body_desc *d = &b->desc;
+    mpm_real F[3][MPM__SUPPORT] = {{0}}, V[3][MPM__SUPPORT], N[MPM__SUPPORT];
+    mpm__weights s;
+    int32_t at;
+    int n, p, a, c, face, any = 0;
+    for (at = r->first; at < r->first + r->count; at++) any |= q->flags[at];
+    if (!(any & d->absorb)) return;
+    mpm__gather(w, r, k, ky, MPM__MOMENTUM, 1, V);
+    MPM__EACH_PIECE(r, at, n) {
+        mpm__weigh(w, r, at, n, k, ky, &s);
+        for (p = 0; p < n; p++)
+            for (face = 0; face < 2; face++) {
+                const int32_t i = at + p;
+                mpm_real v[3], normal[3] = {0, 0, 1}, vn = 0, cn, ct, t[3];
+                if (!(q->flags[i] & d->absorb & (face ? MPM_SIDES : MPM_BOTTOM))) continue;
+                if (face) { /* radial, whatever the section */
+                    mpm_real x = q->x[0][i] - d->shape.center[0], y = ky > 1 ? q->x[1][i] - d->shape.center[1] : 0;
+                    mpm_real radius = mpm__sqrt(x * x + y * y);
+                    normal[0] = radius > 0 ? x / radius : 1;
+                    normal[1] = radius > 0 ? y / radius : 0;
+                    normal[2] = 0;
+                }
+                cn = d->absorb_a * d->density * d->wave_p * b->area[face] * q->mass[i] / b->mass[face];
+                ct = d->absorb_b * d->density * d->wave_s * b->area[face] * q->mass[i] / b->mass[face];
+                for (c = 0; c < 3; c++) v[c] = mpm__value(&s, p, k, ky, V[c]);
+                for (c = 0; c < 3; c++) vn += v[c] * normal[c];
+                mpm__products(&s, p, k, ky, N);
+                for (c = 0; c < 3; c++) {
+                    t[c] = -(cn - ct) * vn * normal[c] - ct * v[c];
+                    for (a = 0; a < k * ky * k; a++) F[c][a] += t[c] * N[a];
+                    w->ledger.absorbed -= (double)(t[c] * v[c] * dt);
+                    w->ledger.impulse[c] += (double)(t[c] * dt);
+                }
+            }
+    }
+    mpm__scatter(w, r, k, ky, MPM__FORCE, F);
+}
+
+MPM_API void mpm_forces(mpm_world *w, mpm_real dt)
+{
+    const mpm_real *g = w->desc.gravity;
+    int32_t i;
+    int d;
+#define MPM__CALL(k, ky, hoop) mpm__forces_run(w, run, k, ky, hoop)
+    MPM__EACH_RUN(w, MPM__CALL);
+#undef MPM__CALL
+#define MPM__CALL(k, ky, hoop)                                                       \
+    do {                                                                             \
+        if (w->body[run->body].desc.absorb) mpm__absorb_run(w, run, k, ky, dt); \
+    } while (0)
+    MPM__EACH_RUN(w, MPM__CALL);
+#undef MPM__CALL
+    if (g[0] != 0 || g[1] != 0 || g[2] != 0)
+        for (i = 0; i < w->nodes; i++)
+            for (d = 0; d < 3; d++) {
+                mpm_node *n = &w->node[i];
+                n->force[d] += n->mass * g[d];
+                w->ledger.impulse[d] += (double)(n->mass * g[d] * dt);
+                w->ledger.gravity += (double)((n->momentum[d] + MPM_R(0.5) * n->mass * g[d] * dt) * g[d] * dt);
+            }
+}
+
+MPM_API void mpm_grid_update(mpm_world *w, mpm_real dt)
+{
+    int32_t i;
+    int d;
+    for (i = 0; i < w->nodes; i++) {
+        mpm_node *n = &w->node[i];
+        if (n->sides) {
+            double removed[3] = {0, 0, 0};
+            mpm__constrain(w, n, n->force, removed);
+            for (d = 0; d < 3; d++) w->ledger.impulse[d] -= removed[d] * (double)dt;
+        }
+        for (d = 0; d < 3; d++) n->momentum[d] += n->force[d] * dt;
+        if (n->sides) mpm__walls(w, n, dt);
+    }
+}
+
+/* ---- contact --------------------------------------------------------------------------------- */
+
+/* Mass gradient at the nodes of a run (A 3.30). It points INTO the body. In axisymmetry the
+   gradient of the ring's mass has a radial term of its own. */
+MPM__KERNEL void mpm__gradient_run(mpm_world *w, const mpm_run *r, int k, int ky, int hoop)
+{
+    const mpm_points *q = &w->points;
+    mpm_real F[3][MPM__SUPPORT] = {{0}}, G[3][MPM__SUPPORT], N[MPM__SUPPORT];
+    mpm__weights s;
+    int32_t at;
+    int n, p, a, d;
+    MPM__EACH_PIECE(r, at, n) {
+        mpm__weigh(w, r, at, n, k, ky, &s);
+        for (p = 0; p < n; p++) {
+            const mpm_real m = q->mass[at + p];
+            mpm__gradients(&s, p, k, ky, G);
+            for (d = 0; d < 3; d++)
+                for (a = 0; a < k * ky * k; a++) F[d][a] += m * G[d][a];
+            if (hoop) {
+                const mpm_real ring = m / q->x[0][at + p];
+                mpm__products(&s, p, k, ky, N);
+                for (a = 0; a < k * ky * k; a++) F[0][a] += ring * N[a];
+            }
+        }
+    }
+    mpm__scatter(w, r, k, ky, MPM__GRADIENT, F);
+}
+
+/* n = g / |g|; 0 if g is no direction at all: shorter than round-off beside `scale`. */
+static inline int mpm__unit(const mpm_real *g, mpm_real scale, mpm_real *n)
+{
+    mpm_real big = 0, length;
+    int d;
+    for (d = 0; d < 3; d++) {
+        mpm_real size = g[d] < 0 ? -g[d] : g[d];
+        if (size > big) big = size;
+    }
+    if (!(big > scale)) return 0;
+    length = mpm__sqrt((g[0] / big) * (g[0] / big) + (g[1] / big) * (g[1] / big) + (g[2] / big) * (g[2] / big));
+    for (d = 0; d < 3; d++) n[d] = g[d] / big / length;
+    return 1;
+}
+
+/* The normal of a pair, outward of a: along the gradient of b, against that of a. Gradients are
+   divided by the bodies' initial densities, which makes them volume gradients. */
+static inline void mpm__pair_normal(const mpm_world *w, mpm_pair *pair)
+{
+    const mpm_node *a = &w->node[pair->a], *b = &w->node[pair->b];
+    const mpm_real ra = w->body[a->body].desc.density, rb = w->body[b->body].desc.density;
+    const mpm_real tiny = MPM_R(1024.0) * MPM_EPSILON / w->desc.cell;
+    mpm_real ga[3], gb[3], mean[3], na[3] = {0, 0, 0}, nb[3] = {0, 0, 0}, la = 0, lb = 0;
+    int d, has_a, has_b, use_b = 1;
+    for (d = 0; d < 3; d++) {
+        ga[d] = -a->gradient[d] / ra;
+        gb[d] = b->gradient[d] / rb;
+        mean[d] = ga[d] + gb[d];
+        la += ga[d] * ga[d];
+        lb += gb[d] * gb[d];
+    }
+    has_a = mpm__unit(ga, tiny * a->mass / ra, na);
+    has_b = mpm__unit(gb, tiny * b->mass / rb, nb);
+    if (w->desc.normal == MPM_NORMAL_MVG) use_b = lb >= la;
+    if (w->desc.normal == MPM_NORMAL_AVERAGE &&
+        mpm__unit(mean, tiny * (a->mass / ra + b->mass / rb), pair->normal))
+        return;
+    if (w->desc.normal == MPM_NORMAL_FIXED) {
+        na[0] = na[1] = nb[0] = nb[1] = 0;
+        na[2] = nb[2] = -1; /* the higher-numbered body, the substrate, lies below */
+        has_a = has_b = 1;
+    }
+    for (d = 0; d < 3; d++) pair->normal[d] = (use_b && has_b) || !has_a ? nb[d] : na[d];
+}
+
+MPM_API void mpm_contact_find(mpm_world *w)
+{
+    const int reach = w->support[0] * w->support[1] * w->support[2];
+    int32_t i, a, b;
+    int s;
+    w->pairs = 0;
+    for (i = 0; i < w->nodes; i++) {
+        if (w->head[w->node[i].index] != i || w->node[i].next < 0) continue;
+        for (b = i; b >= 0; b = w->node[b].next)
+            for (a = w->node[b].next; a >= 0; a = w->node[a].next) {
+                mpm_pair *pair = &w->pair[w->pairs];
+                if (!(w->node[a].mass > w->desc.mass_cutoff * w->body[w->node[a].body].point_mass)) continue;
+                if (!(w->node[b].mass > w->desc.mass_cutoff * w->body[w->node[b].body].point_mass)) continue;
+                memset(pair, 0, sizeof *pair);
+                pair->a = a;
+                pair->b = b;
+                w->node[a].sides |= MPM_NODE_CONTACT;
+                w->node[b].sides |= MPM_NODE_CONTACT;
+                w->pairs++;
+            }
+    }
+    if (w->pairs == 0) return;
+    for (i = 0; i < w->runs; i++)
+        for (s = 0; s < reach; s++)
+            if (w->node[w->slot[(size_t)i * (size_t)reach + (size_t)s]].sides & MPM_NODE_CONTACT)
+                w->run[i].flags |= MPM_NODE_CONTACT;
+#define MPM__CALL(k, ky, hoop)                                                              \
+    do {                                                                                    \
+        if (run->flags & MPM_NODE_CONTACT) mpm__gradient_run(w, run, k, ky, hoop); \
+    } while (0)
+    MPM__EACH_RUN(w, MPM__CALL);
+#undef MPM__CALL
+    for (i = 0; i < w->pairs; i++) {
+        mpm_pair *pair = &w->pair[i];
+        mpm__constrain(w, &w->node[pair->a], w->node[pair->a].gradient, NULL);
+        mpm__constrain(w, &w->node[pair->b], w->node[pair->b].gradient, NULL);
+        mpm__pair_normal(w, pair);
+    }
+}
+
+/* Momentum that a must gain and b lose so that both move together (A 3.31, times dt). */
+static inline void mpm__sticking(const mpm_node *a, const mpm_node *b, mpm_real *j)
+{
+    int d;
+    for (d = 0; d < 3; d++)
+        j[d] = (a->mass * b->momentum[d] - b->mass * a->momentum[d]) / (a->mass + b->mass);
+}
+
+/* Turns the sticking impulse into one with Coulomb friction: the normal part whole, the tangential
+   part at most mu times as large. */
+static inline void mpm__coulomb(const mpm_real *normal, mpm_real mu, mpm_real *j)
+{
+    mpm_real jn = j[0] * normal[0] + j[1] * normal[1] + j[2] * normal[2], jt = 0, keep, t[3];
+    int d;
+    for (d = 0; d < 3; d++) {
+        t[d] = j[d] - jn * normal[d];
+        jt += t[d] * t[d];
+    }
+    jt = mpm__sqrt(jt);
+    keep = mu * (jn < 0 ? -jn : jn);
+    keep = jt > keep ? keep / jt : 1;
+    for (d = 0; d < 3; d++) j[d] = jn * normal[d] + (mu > 0 ? keep * t[d] : 0);
+}
+
+MPM_API void mpm_contact_apply(mpm_world *w, mpm_real dt)
+{
+    int32_t i;
+    int d;
+    w->held = 0;
+    if (w->desc.contact == MPM_CONTACT_NONE) return;
+    for (i = 0; i < w->pairs; i++) {
+        const mpm_pair *pair = &w->pair[i];
+        mpm_node *a = &w->node[pair->a], *b = &w->node[pair->b];
+        mpm_real j[3], toward = 0, loss = 0;
+        int approaching, bonded;
+        mpm__sticking(a, b, j);
+        for (d = 0; d < 3; d++) toward -= j[d] * pair->normal[d];
+        approaching = toward > 0; /* (m_b P_a - m_a P_b) . n > 0 (A 3.29) */
+        bonded = !approaching && pair->bond >= 1;
+        if (!approaching && !bonded && w->desc.contact != MPM_CONTACT_WELD) continue;
+        if (approaching && w->desc.contact == MPM_CONTACT_FRICTION) mpm__coulomb(pair->normal, w->desc.friction, j);
+        mpm__constrain(w, a, j, NULL);
+        for (d = 0; d < 3; d++) {
+            const mpm_real va = a->momentum[d] / a->mass, vb = b->momentum[d] / b->mass;
+            loss -= j[d] * (va - vb) + MPM_R(0.5) * j[d] * j[d] * (1 / a->mass + 1 / b->mass);
+            a->momentum[d] += j[d];
+            b->momentum[d] -= j[d];
+            a->force[d] += j[d] / dt;
+            b->force[d] -= j[d] / dt;
+        }
+        if (bonded) {
+            w->ledger.bond += (double)loss;
+            w->held++;
+        } else {
+            w->ledger.contact += (double)loss;
+        }
+    }
+}
+
+/* ---- back to the points ---------------------------------------------------------------------- */
+
+MPM__KERNEL void mpm__g2p_run(mpm_world *w, const mpm_run *r, int k, int ky, mpm_real dt, double *gained)
+{
+    const mpm_points *q = &w->points;
+    mpm_real A[3][MPM__SUPPORT], dv[3][MPM__LANES], sum = 0;
+    mpm__weights s;
+    int32_t at;
+    int n, p, d;
+    mpm__gather(w, r, k, ky, MPM__FORCE, 1, A);
+    MPM__EACH_PIECE(r, at, n) {
+        mpm__weigh(w, r, at, n, k, ky, &s);
+        for (d = 0; d < 3; d++) {
+            mpm_real *v = q->v[d] + at;
+            for (p = 0; p < n; p++) dv[d][p] = dt * mpm__value(&s, p, k, ky, A[d]);
+            for (p = 0; p < n; p++) v[p] += dv[d][p];
+        }
+        for (p = 0; p < n; p++)
+            sum += q->mass[at + p] * (dv[0][p] * dv[0][p] + dv[1][p] * dv[1][p] + dv[2][p] * dv[2][p]);
+    }
+    *gained += (double)sum;
+}
+
+MPM_API void mpm_g2p(mpm_world *w, mpm_real dt)
+{
+    double points = 0, nodes = 0;
+    int32_t i;
+    int d;
+#define MPM__CALL(k, ky, hoop) mpm__g2p_run(w, run, k, ky, dt, &points)
+    MPM__EACH_RUN(w, MPM__CALL);
+#undef MPM__CALL
+    /* The grid gains sum(m a^2) dt^2 / 2 beyond P.a dt, the points, smoothing a, a little less. */
+    for (i = 0; i < w->nodes; i++) {
+        const mpm_node *n = &w->node[i];
+        if (n->mass > w->desc.mass_cutoff * w->body[n->body].point_mass)
+            for (d = 0; d < 3; d++) nodes += (double)(n->force[d] * dt * (n->force[d] * dt / n->mass));
+    }
+    w->ledger.transfer += (nodes - points) / 2;
+}
+
+MPM_API void mpm_musl(mpm_world *w)
+{
+    int32_t i;
+    int d;
+#define MPM__CALL(k, ky, hoop) mpm__p2g_run(w, run, k, ky, 1)
+    MPM__EACH_RUN(w, MPM__CALL);
+#undef MPM__CALL
+    for (i = 0; i < w->nodes; i++) {
+        mpm_node *n = &w->node[i];
+        const mpm_real f = n->mass > 0 ? 1 / n->mass : 0;
+        int s;
+        for (d = 0; d < 3; d++) n->velocity[d] *= f;
+        if (!n->sides) continue;
+        mpm__constrain(w, n, n->velocity, NULL);
+        for (s = 0; s < 6; s++)
+            if ((n->sides >> s & 1) && w->desc.side[s] == MPM_SIDE_WALL &&
+                ((s & 1) ? n->velocity[s / 2] > 0 : n->velocity[s / 2] < 0))
+                n->velocity[s / 2] = 0;
+    }
+}
+
+/* Strain and rotation increments of a piece of a run (A 3.35). */
+MPM__KERNEL void mpm__strain_piece(const mpm_world *w, const mpm_run *r, int32_t at, int n, int k, int ky, int hoop,
+                                   mpm_real dt, mpm_real V[3][MPM__SUPPORT], mpm_real (*e)[MPM_BLOCK],
+                                   mpm_real (*spin)[MPM_BLOCK], int to)
+{
+    const mpm_real *radius = w->points.x[0] + at;
+    mpm__weights s;
+    int p;
+    mpm__weigh(w, r, at, n, k, ky, &s);
+    for (p = 0; p < n; p++) {
+        mpm_real gx[3], gy[3], gz[3], vr;
+        vr = mpm__value_gradient(&s, p, k, ky, V[0], gx);
+        mpm__value_gradient(&s, p, k, ky, V[1], gy);
+        mpm__value_gradient(&s, p, k, ky, V[2], gz);
+        e[0][to + p] = dt * gx[0];
+        e[1][to + p] = dt * (hoop ? vr / radius[p] : gy[1]);
+        e[2][to + p] = dt * gz[2];
+        e[3][to + p] = MPM_R(0.5) * dt * (gy[2] + gz[1]);
+        e[4][to + p] = MPM_R(0.5) * dt * (gx[2] + gz[0]);
+        e[5][to + p] = MPM_R(0.5) * dt * (gx[1] + gy[0]);
+        spin[0][to + p] = MPM_R(0.5) * dt * (gz[1] - gy[2]);
+        spin[1][to + p] = MPM_R(0.5) * dt * (gx[2] - gz[0]);
+        spin[2][to + p] = MPM_R(0.5) * dt * (gy[0] - gx[1]);
+    }
+}
+
+/* Density (A 3.36), then the material, for points [first, first + n) whose strains are ready. */
+static inline mpm_status mpm__constitute(mpm_world *w, const mpm_body *body, int32_t first, int n, mpm_real dt,
+                                         mpm_real (*e)[MPM_BLOCK], mpm_real (*spin)[MPM_BLOCK])
+{
+    mpm_points *q = &w->points;
+    mpm_real *rho = q->density + first, worst = 0;
+    mpm_block b;
+    mpm_status s;
+    int i, p;
+    for (p = 0; p < n; p++) {
+        const mpm_real volume = 1 + e[0][p] + e[1][p] + e[2][p];
+        worst = volume > MPM_EPSILON && volume < 1 / MPM_EPSILON ? worst : 1;
+        rho[p] /= volume;
+    }
+    if (worst > 0)
+        for (p = 0; p < n; p++) {
+            const mpm_real volume = 1 + e[0][p] + e[1][p] + e[2][p];
+            if (!mpm__finite(volume)) return mpm__fail(&w->fault, MPM_ERR_NAN, "strain of point", volume, first + p);
+            if (!(volume > MPM_EPSILON && volume < 1 / MPM_EPSILON))
+                return mpm__fail(&w->fault, MPM_ERR_STATE, "volume ratio of point in one step", volume, first + p);
+        }
+    if (!body->desc.stress) return MPM_OK;
+    b.count = n;
+    b.dt = dt;
+    b.cell = w->desc.cell;
+    for (i = 0; i < 6; i++) b.strain[i] = e[i];
+    for (i = 0; i < 3; i++) b.spin[i] = spin[i];
+    for (i = 0; i < 6; i++) b.stress[i] = q->stress[i] + first;
+    b.density = rho;
+    b.energy = q->energy + first;
+    b.temperature = q->temperature + first;
+    b.plastic_strain = q->plastic_strain + first;
+    b.plastic_rate = q->plastic_rate + first;
+    b.plastic_work = q->plastic_work + first;
+    b.fault = &w->fault;
+    s = body->desc.stress(body->desc.material, &b);
+    if (s < 0) w->fault.index += first;
+    if (s > 0) w->notices++;
+    return s;
+}
+
+/* Strain increments of all points of one body, a block at a time. */
+MPM__KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, int32_t run, int32_t runs, int k, int ky, int hoop,
+                                        mpm_real dt)
+{
+    mpm_real e[6][MPM_BLOCK], spin[3][MPM_BLOCK], V[3][MPM__SUPPORT];
+    int32_t first = w->body[body].first;
+    int filled = 0;
+    mpm_status s;
+    for (; run < runs; run++) {
+        const mpm_run *r = &w->run[run];
+        int32_t at = r->first;
+        mpm__gather(w, r, k, ky, MPM__VELOCITY, 0, V);
+        while (at < r->first + r->count) {
+            int n = (int)(r->first + r->count - at);
+            if (n > MPM_BLOCK - filled) n = MPM_BLOCK - filled;
+            if (n > MPM__LANES) n = MPM__LANES;
+            mpm__strain_piece(w, r, at, n, k, ky, hoop, dt, V, e, spin, filled);
+            at += n;
+            filled += n;
+            if (filled < MPM_BLOCK && !(run + 1 == runs && at == r->first + r->count)) continue;
+            if ((s = mpm__constitute(w, &w->body[body], first, filled, dt, e, spin)) < 0) return s;
+            first += filled;
+            filled = 0;
+        }
+    }
+    return MPM_OK;
+}
+
+MPM_API mpm_status mpm_stress(mpm_world *w, mpm_real dt)
+{
+    const int hoop = w->desc.geometry == MPM_AXISYMMETRIC, flat = mpm__flat(&w->desc);
+    int32_t b, from = 0, to = 0;
+    mpm_status s;
+    for (b = 0; b < w->bodies; b++, from = to) {
+        while (to < w->runs && w->run[to].body == b) to++;
+        if (!flat && !w->ghost) s = mpm__stress_body(w, b, from, to, 2, 2, 0, dt);
+        else if (!flat) s = mpm__stress_body(w, b, from, to, 3, 3, 0, dt);
+        else if (!w->ghost && !hoop) s = mpm__stress_body(w, b, from, to, 2, 1, 0, dt);
+        else if (!w->ghost) s = mpm__stress_body(w, b, from, to, 2, 1, 1, dt);
+        else if (!hoop) s = mpm__stress_body(w, b, from, to, 3, 1, 0, dt);
+        else s = mpm__stress_body(w, b, from, to, 3, 1, 1, dt);
+        if (s < 0) return s;
+    }
+    return MPM_OK;
+}
+
+MPM__KERNEL void mpm__move_run(mpm_world *w, const mpm_run *r, int k, int ky, mpm_real dt)
+{
+    mpm_real V[3][MPM__SUPPORT];
+    mpm__weights s;
+    int32_t at;
+    int n, p, d;
+    mpm__gather(w, r, k, ky, MPM__MOMENTUM, 1, V);
+    MPM__EACH_PIECE(r, at, n) {
+        mpm__weigh(w, r, at, n, k, ky, &s);
+        for (d = 0; d < 3; d++) {
+            mpm_real *x = w->points.x[d] + at;
+            for (p = 0; p < n; p++) x[p] += dt * mpm__value(&s, p, k, ky, V[d]);
+        }
+    }
+}
+
+MPM_API void mpm_move(mpm_world *w, mpm_real dt)
+{
+#define MPM__CALL(k, ky, hoop) mpm__move_run(w, run, k, ky, dt)
+    MPM__EACH_RUN(w, MPM__CALL);
+#undef MPM__CALL
+    w->time += dt;
+    w->steps++;
+}
+
+MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt)
+{
+    mpm_status s = mpm_locate(w);
+    if (s < 0) return s;
+    mpm_p2g(w);
+    mpm_forces(w, dt);
+    mpm_grid_update(w, dt);
+    mpm_contact_find(w);
+    mpm_contact_apply(w, dt);
+    mpm_g2p(w, dt);
+    mpm_musl(w);
+    if (mpm_stress(w, dt) < 0) return w->fault.status;
+    mpm_move(w, dt);
+    return s;
+}
+
+/* ---- looking at it --------------------------------------------------------------------------- */
+
+/* Neumaier's sum: exact to the last place for any order of the points. */
+static inline void mpm__sum(double *sum, double *rest, double a)
+{
+    double t = *sum + a, big = *sum < 0 ? -*sum : *sum, size = a < 0 ? -a : a;
+    *rest += big >= size ? (*sum - t) + a : (a - t) + *sum;
+    *sum = t;
+}
+
+MPM_API mpm_totals mpm_body_totals(const mpm_world *w, int32_t body)
+{
+    const mpm_points *q = &w->points;
+    const int32_t from = body < 0 ? 0 : body, to = body < 0 ? w->bodies : body + 1;
+    double rest[8] = {0, 0, 0, 0, 0, 0, 0, 0};
+    mpm_totals t;
+    int32_t b, i;
+    int d, any = 0;
+    memset(&t, 0, sizeof t);
+    for (b = from; b < to; b++) {
+        const mpm_body *B = &w->body[b];
+        t.points += B->count;
+        t.retired += B->count - B->active;
+        for (i = B->first; i < B->first + B->count; i++) {
+            const double m = (double)q->mass[i];
+            double v2 = 0;
+            for (d = 0; d < 3; d++) {
+                const double v = (double)q->v[d][i], x = (double)q->x[d][i];
+                v2 += v * v;
+                mpm__sum(&t.momentum[d], &rest[d], m * v);
+                if (i >= B->first + B->active) continue;
+                if (!any || x < t.low[d]) t.low[d] = x;
+                if (!any || x > t.high[d]) t.high[d] = x;
+            }
+            if (i < B->first + B->active) any = 1;
+            mpm__sum(&t.mass, &rest[3], m);
+            mpm__sum(&t.kinetic, &rest[4], 0.5 * m * v2);
+            mpm__sum(&t.internal, &rest[5], m * (double)q->energy[i]);
+            mpm__sum(&t.plastic_strain_mean, &rest[6], m * (double)q->plastic_strain[i]);
+            mpm__sum(&t.plastic_work_mean, &rest[7], m * (double)q->plastic_work[i]);
+            if ((double)q->temperature[i] > t.temperature_max) t.temperature_max = (double)q->temperature[i];
+        }
+    }
+    for (d = 0; d < 3; d++) t.momentum[d] += rest[d];
+    t.mass += rest[3];
+    t.kinetic += rest[4];
+    t.internal += rest[5];
+    if (t.mass > 0) {
+        t.plastic_strain_mean = (t.plastic_strain_mean + rest[6]) / t.mass;
+        t.plastic_work_mean = (t.plastic_work_mean + rest[7]) / t.mass;
+    }
+    return t;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* MPM_IMPLEMENTATION */

@@ -1,0 +1,1693 @@
+/* mpm_ptw.h - the material: strength, melting, equation of state and stress update of metals at
+   impact rates. Version 0.1.0. SPDX-License-Identifier: MIT
+
+   DO THIS
+     In ONE source file:                          everywhere else:
+       #define MPM_IMPLEMENTATION                   #include "mpm_ptw.h"
+       #include "mpm_ptw.h"
+     (MPM_PTW_IMPLEMENTATION gives this header's functions alone.) Fill a material, check it, and
+     hand mpm_material_stress with a pointer to it to a body. Link with -lm.
+
+   WHAT IT DOES NOT DO
+     No heat conduction, no thermal expansion beyond the Grueneisen term, no temperature rise from
+     compression (only plastic work heats, as in A 3.44), no latent heat, no fracture or spall, no
+     porosity, no phase change other than the loss of strength at the melting point, no kinematic
+     hardening, no anisotropy.
+
+   A COMPLETE PROGRAM
+       #define MPM_IMPLEMENTATION
+       #include "mpm_ptw.h"
+       #include <stdio.h>
+       int main(void) {
+           mpm_material al;
+           mpm_material_state s = {0.1, 1e6, 300, 2700, 0};
+           mpm_units si = mpm_units_si();
+           if (mpm_material_preset(&al, "al", &si, NULL) < 0) return 1;
+           printf("%g MPa\n", 1e-6 * mpm_material_flow_stress(&al, &s));
+           return 0;
+       }
+
+   CONTENTS
+     choices and parameters    mpm_material and the enums before it
+     presets                   mpm_material_preset, _model, _preset_count, _preset_name, _check
+     the laws, one point       _flow, _flow_stress, _shear_modulus, _melt_temperature,
+                               _attempt_rate, _pressure, _hugoniot_pressure, _wave_speeds
+     the update, a block       mpm_material_stress
+
+   CONVENTIONS
+     As in mpm.h: any consistent units, Cauchy stress with tension positive, pressure with
+     compression positive, tensors as xx yy zz yz xz xy. Energy is per mass; the equation of state
+     (A 3.40 - 3.43) works with energy per initial volume, rho0 times that.
+
+   Equation numbers "A n" are those of source A (see mpm.h). Sources of numbers:
+     [A]   source A, tables 2.1 and 2.2
+     [PTW] Preston, Tonks, Wallace, J. Appl. Phys. 93 (2003) 211
+     [S]   Steinberg, Equation of state and strength properties of selected materials,
+           UCRL-MA-106439 (1991, change 1, 1996)
+     [JC]  Johnson, Cook, 7th Int. Symp. Ballistics (1983) 541; Eng. Fract. Mech. 21 (1985) 31
+     [C]   computed here from numbers of the other sources
+     [M]   commonly used, but its printed source was not seen: check before you rely on it */
+#ifndef MPM_PTW_H
+#define MPM_PTW_H
+
+#include "mpm.h"
+
+#ifdef MPM_FLOAT
+#define mpm_material_default mpm_material_default_f32
+#define mpm_material_preset mpm_material_preset_f32
+#define mpm_material_model mpm_material_model_f32
+#define mpm_material_preset_count mpm_material_preset_count_f32
+#define mpm_material_preset_name mpm_material_preset_name_f32
+#define mpm_material_check mpm_material_check_f32
+#define mpm_material_flow mpm_material_flow_f32
+#define mpm_material_flow_stress mpm_material_flow_stress_f32
+#define mpm_material_shear_modulus mpm_material_shear_modulus_f32
+#define mpm_material_melt_temperature mpm_material_melt_temperature_f32
+#define mpm_material_attempt_rate mpm_material_attempt_rate_f32
+#define mpm_material_pressure mpm_material_pressure_f32
+#define mpm_material_hugoniot_pressure mpm_material_hugoniot_pressure_f32
+#define mpm_material_wave_speeds mpm_material_wave_speeds_f32
+#define mpm_material_stress mpm_material_stress_f32
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- choices ------------------------------------------------------------------------------- */
+
+/* The flow stress. */
+typedef enum mpm_strength {
+    MPM_STRENGTH_ELASTIC,  /* never yields */
+    MPM_STRENGTH_LINEAR,   /* Y + H eps */
+    MPM_STRENGTH_JC,       /* Johnson-Cook */
+    MPM_STRENGTH_SCG,      /* Steinberg-Cochran-Guinan, rate independent */
+    MPM_STRENGTH_PTW,      /* Preston-Tonks-Wallace (A 2.4 - 2.8) */
+    MPM_STRENGTH_USER      /* the caller's strength_fn */
+} mpm_strength;
+
+/* The shear modulus. */
+typedef enum mpm_shear {
+    MPM_SHEAR_CONSTANT,  /* shear_modulus */
+    MPM_SHEAR_MTS,       /* falls with temperature (A 2.6) */
+    MPM_SHEAR_SCG        /* shear_modulus (1 + A p / eta^(1/3) - B (T - 300 K)) */
+} mpm_shear;
+
+/* The melting temperature; at and above it the strength is zero. */
+typedef enum mpm_melt {
+    MPM_MELT_NONE,      /* never melts */
+    MPM_MELT_CONSTANT,  /* melt_temperature */
+    MPM_MELT_SCG        /* rises with density (A 2.9) */
+} mpm_melt;
+
+/* The pressure. */
+typedef enum mpm_eos {
+    MPM_EOS_LINEAR,         /* K (eta - 1), K from young and poisson; no thermal pressure */
+    MPM_EOS_MIE_GRUENEISEN  /* shock Hugoniot plus Grueneisen times energy (A 3.42, 3.43) */
+} mpm_eos;
+
+/* How a trial stress beyond the flow stress comes back to it. */
+typedef enum mpm_return_mapping {
+    MPM_RETURN_CONSISTENT,  /* the increment and the rate it implies satisfy the flow law together */
+    MPM_RETURN_STAGED       /* A6 - A8: one explicit estimate, factor capped at 1; first order */
+} mpm_return_mapping;
+
+/* How stress follows a rotating material. */
+typedef enum mpm_rotation {
+    MPM_ROTATION_PROPER,  /* Hughes-Winget: an exact rotation, invariants kept to rounding */
+    MPM_ROTATION_JAUMANN  /* A2: first order, stretches the deviator at large rotations */
+} mpm_rotation;
+
+/* ---- parameters ---------------------------------------------------------------------------- */
+
+/* Preston-Tonks-Wallace, all dimensionless except the atom's mass. */
+typedef struct mpm_ptw {
+    mpm_real theta;        /* initial hardening rate, > 0 */
+    mpm_real d;            /* hardening curvature (p in [PTW]); 0 is the Voce limit */
+    mpm_real y0, yinf;     /* yield stress / (2 mu) at T = 0 and near melting, 0 <= yinf <= y0 */
+    mpm_real y1, y2;       /* yield stress of the intermediate rates, y1 r^y2 */
+    mpm_real s0, sinf;     /* saturation stress likewise; yinf <= sinf <= s0, y0 <= s0 */
+    mpm_real s1;           /* exponent of the overdriven regime, s0 r^s1 (beta in [PTW]) */
+    mpm_real kappa;        /* temperature dependence of the rate term, >= 0 */
+    mpm_real gamma;        /* rate normalisation, > 0 */
+    mpm_real atomic_mass;  /* mass of ONE atom [mass]; source A prints grams as kilograms */
+} mpm_ptw;
+
+/* Johnson-Cook: (a + b eps^n) (1 + c ln(rate/rate0)) (1 - T*^m), T* = (T - T0)/(T_m - T0). The
+   logarithm and T* are bounded below by 0. */
+typedef struct mpm_jc {
+    mpm_real a, b;         /* [stress] */
+    mpm_real n, c, m;      /* exponents and rate coefficient */
+    mpm_real rate;         /* reference rate [1/time] */
+    mpm_real temperature;  /* T0 [K] */
+} mpm_jc;
+
+/* Steinberg-Cochran-Guinan strength: min(y0 (1 + beta eps)^n, ymax) mu(p,T)/mu0. */
+typedef struct mpm_scg {
+    mpm_real y0, ymax;  /* [stress] */
+    mpm_real beta, n;   /* hardening */
+} mpm_scg;
+
+/* The state of one point, as the laws below see it. Each law reads what it needs. */
+typedef struct mpm_material_state {
+    mpm_real plastic_strain;  /* effective plastic strain, >= 0 */
+    mpm_real plastic_rate;    /* its rate [1/time], >= 0 */
+    mpm_real temperature;     /* [K], >= 0 */
+    mpm_real density;         /* [mass/length^3], > 0 */
+    mpm_real pressure;        /* compression positive [stress]; for the SCG shear modulus only */
+} mpm_material_state;
+
+/* A flow stress and its slopes. The slopes guide the solution: wrong ones cost iterations, not
+   correctness (except that the staged return uses strain_slope as its E_p). */
+typedef struct mpm_flow {
+    mpm_real stress;        /* flow stress, >= 0 */
+    mpm_real strain_slope;  /* d stress / d plastic strain */
+    mpm_real rate_slope;    /* d stress / d plastic rate [stress time] */
+} mpm_flow;
+
+struct mpm_material;
+
+/* A caller's flow stress: must not fall with rate or strain faster than the elastic slope 3 mu
+   rises, or the return is not unique (it still returns). A NaN stops the step with MPM_ERR_NAN. */
+typedef mpm_flow (*mpm_strength_fn)(const void *context, const struct mpm_material *m,
+                                    const mpm_material_state *s);
+
+/* One material, every number in the caller's units. Fill it with mpm_material_default or
+   mpm_material_preset, change fields, then call mpm_material_check. */
+typedef struct mpm_material {
+    const char *name;  /* of the preset; "" for none */
+    mpm_units units;   /* those the preset was converted to */
+
+    mpm_strength strength;
+    mpm_shear shear;
+    mpm_melt melt;
+    mpm_eos eos;
+    mpm_return_mapping mapping;
+    mpm_rotation rotation;
+    int erf_literal;  /* 0: the argument of erf in A 2.7 is bounded below by 0 (default); 1: as printed */
+
+    mpm_real density;        /* rho0 [mass/length^3], > 0 */
+    mpm_real specific_heat;  /* Cp [energy/(mass K)], > 0 where plastic work heats */
+    mpm_real temperature;    /* initial [K], >= 0 */
+    mpm_real heat_fraction;  /* chi, the part of plastic work that heats (A 3.44), 0 .. 1 */
+    mpm_real young, poisson; /* for wave speeds and the linear equation of state */
+
+    mpm_real shear_modulus;        /* mu0: at T = 0 for MTS, at 300 K and p = 0 otherwise [stress] */
+    mpm_real shear_d, shear_t;     /* D [stress] and T0 [K] of A 2.6 */
+    mpm_real shear_a, shear_b;     /* A [1/stress] and B [1/K] of SCG */
+    mpm_real shear_floor;          /* mu never falls below this fraction of shear_modulus, > 0 */
+
+    mpm_real melt_temperature;     /* T_m0 [K] */
+    mpm_real melt_a;               /* a of A 2.9; its Gamma0 is gruneisen */
+
+    mpm_real sound_speed;          /* c0 of Us = c0 + s up [velocity] */
+    mpm_real hugoniot_slope;       /* s */
+    mpm_real gruneisen;            /* Gamma0 */
+
+    mpm_real linear_yield, linear_hardening;  /* Y and H [stress] */
+    mpm_jc jc;
+    mpm_scg scg;
+    mpm_ptw ptw;
+    mpm_strength_fn strength_fn;    /* MPM_STRENGTH_USER */
+    const void *strength_context;
+
+    /* artificial bulk viscosity, added to the pressure while the material is compressed at rate D:
+       rho cell D (viscosity_quadratic cell D + viscosity_linear c_bulk). Both 0: none. */
+    mpm_real viscosity_linear, viscosity_quadratic;
+
+    /* counters of mpm_material_stress; the caller may read and reset them */
+    unsigned long shear_floor_hits;  /* points whose shear modulus was bounded */
+    unsigned long iteration_hits;    /* returns that ended at the iteration cap */
+    unsigned long erf_clip_hits;     /* yielding points beyond r = 1, where the erf bound acts */
+} mpm_material;
+
+/* ---- presets ------------------------------------------------------------------------------- */
+
+/* An elastic material with nothing set: chi 0.9, shear_floor 1e-3, temperature 298 K, consistent
+   return, proper rotation. Set at least density, young and poisson. */
+MPM_API mpm_material mpm_material_default(void);
+
+/* Fills *m with the named metal and its preferred strength, in the given units.
+   name   one of mpm_material_preset_name
+   fault  may be NULL
+   Returns MPM_OK, MPM_ERR_UNKNOWN (no such name) or MPM_ERR_ARGUMENT (units not > 0); *m is then
+   unchanged. Test: 10_material, "presets". */
+MPM_API mpm_status mpm_material_preset(mpm_material *m, const char *name, const mpm_units *units,
+                                       mpm_fault *fault);
+
+/* Changes the strength of a preset: "elastic", "linear", "jc", "scg" or "ptw", together with the
+   shear modulus and melting law that its published set belongs to. "elastic" and "linear" are the
+   textbook solids: constant moduli, linear equation of state, no melting.
+   Returns MPM_OK, or MPM_ERR_UNKNOWN when the model does not exist (field "model") or this
+   material has no published set for it (field "model of material"); *m is then unchanged. */
+MPM_API mpm_status mpm_material_model(mpm_material *m, const char *model, mpm_fault *fault);
+
+/* How many presets there are, and the name of the i-th (NULL outside 0 .. count-1). */
+MPM_API int mpm_material_preset_count(void);
+MPM_API const char *mpm_material_preset_name(int i);
+
+/* Checks every number the chosen laws read. Bounds are inclusive where published sets sit on them.
+   Returns MPM_OK, MPM_ERR_NAN or MPM_ERR_ARGUMENT with the field and its value. */
+MPM_API mpm_status mpm_material_check(const mpm_material *m, mpm_fault *fault);
+
+/* ---- the laws, for one point ----------------------------------------------------------------- */
+
+/* Flow stress and slopes (A 2.4 - 2.8 for PTW). Zero at and above melting; infinite for an elastic
+   material. No errors: a state out of range gives what the formula gives.
+   Tests: 10_material "flow stress against long double", "limits", "slopes". */
+MPM_API mpm_flow mpm_material_flow(const mpm_material *m, const mpm_material_state *s);
+MPM_API mpm_real mpm_material_flow_stress(const mpm_material *m, const mpm_material_state *s);
+
+/* Shear modulus [stress] (A 2.6 for MTS), at least shear_floor * shear_modulus. */
+MPM_API mpm_real mpm_material_shear_modulus(const mpm_material *m, const mpm_material_state *s);
+
+/* Melting temperature [K] at a density > 0 (A 2.9 for SCG); infinite with MPM_MELT_NONE. */
+MPM_API mpm_real mpm_material_melt_temperature(const mpm_material *m, mpm_real density);
+
+/* xidot [1/time], the rate at which atoms attempt to pass an obstacle (A 2.8). PTW only. */
+MPM_API mpm_real mpm_material_attempt_rate(const mpm_material *m, const mpm_material_state *s);
+
+/* Pressure at a density and an internal energy per mass (A 3.42), to *pressure.
+   Returns MPM_OK; MPM_ERR_STATE for a density <= 0 or past the range of the Hugoniot
+   (1 - (s-1) mu <= 0); MPM_ERR_NAN. *pressure is then unchanged. */
+MPM_API mpm_status mpm_material_pressure(const mpm_material *m, mpm_real density, mpm_real energy,
+                                         mpm_real *pressure, mpm_fault *fault);
+
+/* Pressure of the reference curve: behind a shock that compresses the material from rest to the
+   given density; in tension the line rho0 c0^2 mu. Errors as mpm_material_pressure. */
+MPM_API mpm_status mpm_material_hugoniot_pressure(const mpm_material *m, mpm_real density,
+                                                  mpm_real *pressure, mpm_fault *fault);
+
+/* Speeds of longitudinal and shear waves at a density (A 3.46). Either pointer may be NULL. */
+MPM_API void mpm_material_wave_speeds(const mpm_material *m, mpm_real density, mpm_real *longitudinal,
+                                      mpm_real *shear);
+
+/* ---- the update, for a block ----------------------------------------------------------------- */
+
+/* The constitutive update (A 3.38 - 3.44, A1 - A11), an mpm_stress_fn: rotation, elastic trial, yield, return to the flow stress, equation of
+   state with implicit energy, adiabatic heating, plastic work.
+   material  an mpm_material *, valid under mpm_material_check; its counters are written, so two
+             threads need two copies
+   Returns MPM_OK; MPM_CLAMPED if a shear modulus was bounded; MPM_NOT_CONVERGED if a return ended
+   at its iteration cap (bracketed: the value is usable); MPM_ERR_ARGUMENT (count < 0, dt <= 0);
+   MPM_ERR_NAN, MPM_ERR_STATE with the first bad point in block->fault. Blocks of up to 64 points
+   are unchanged on failure; of longer ones, the points before the bad group of 64 are updated.
+   Tests: 11_update. */
+MPM_API mpm_status mpm_material_stress(void *material, const mpm_block *block);
+
+#ifdef __cplusplus
+}
+#endif
+
+/* Stop here if you only want the interface. */
+#endif /* MPM_PTW_H */
+
+/* ============================================================================================ */
+
+#if defined(MPM_IMPLEMENTATION) || defined(MPM_PTW_IMPLEMENTATION)
+#ifndef MPM_PTW_IMPLEMENTED
+#define MPM_PTW_IMPLEMENTED
+
+#include <math.h>
+#include <string.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- small tools --------------------------------------------------------------------------- */
+
+#ifdef MPM_FLOAT
+static inline mpm_real mpm__ptw_exp(mpm_real x) { return expf(x); }
+static inline mpm_real mpm__ptw_expm1(mpm_real x) { return expm1f(x); }
+static inline mpm_real mpm__ptw_log(mpm_real x) { return logf(x); }
+static inline mpm_real mpm__ptw_pow(mpm_real x, mpm_real y) { return powf(x, y); }
+static inline mpm_real mpm__ptw_erf(mpm_real x) { return erff(x); }
+static inline mpm_real mpm__ptw_sqrt(mpm_real x) { return sqrtf(x); }
+static inline mpm_real mpm__ptw_cbrt(mpm_real x) { return cbrtf(x); }
+static inline mpm_real mpm__ptw_abs(mpm_real x) { return fabsf(x); }
+#else
+static inline mpm_real mpm__ptw_exp(mpm_real x) { return exp(x); }
+static inline mpm_real mpm__ptw_expm1(mpm_real x) { return expm1(x); }
+static inline mpm_real mpm__ptw_log(mpm_real x) { return log(x); }
+static inline mpm_real mpm__ptw_pow(mpm_real x, mpm_real y) { return pow(x, y); }
+static inline mpm_real mpm__ptw_erf(mpm_real x) { return erf(x); }
+static inline mpm_real mpm__ptw_sqrt(mpm_real x) { return sqrt(x); }
+static inline mpm_real mpm__ptw_cbrt(mpm_real x) { return cbrt(x); }
+static inline mpm_real mpm__ptw_abs(mpm_real x) { return fabs(x); }
+#endif
+
+static inline mpm_real mpm__ptw_min(mpm_real a, mpm_real b) { return a < b ? a : b; }
+static inline mpm_real mpm__ptw_max(mpm_real a, mpm_real b) { return a > b ? a : b; }
+static inline mpm_real mpm__ptw_infinity(void) { return (mpm_real)HUGE_VAL; }
+/* x - x is 0 for finite numbers only. */
+static inline int mpm__ptw_finite(mpm_real x) { return x - x == MPM_R(0.0); }
+
+/* Notes a fault, if the caller wants one, and hands its status on. */
+static inline mpm_status mpm__ptw_fail(mpm_fault *fault, mpm_status status, const char *field,
+                                       mpm_real value, long index)
+{
+    if (fault) {
+        fault->status = status;
+        fault->field = field;
+        fault->value = value;
+        fault->index = index;
+    }
+    return status;
+}
+
+/* ---- what the laws share ------------------------------------------------------------------- */
+
+/* Combinations of parameters that no point changes: computed once per block. */
+typedef struct mpm__ptw_shared {
+    mpm_real melt_exponent;  /* 2 (Gamma0 - a - 1/3) of A 2.9 */
+    mpm_real cold;           /* below this temperature nothing in the range eta_low..eta_high melts */
+    mpm_real eta_low, eta_high;
+    mpm_real rate_factor;    /* gamma/2 (4 pi/(3 M))^(1/3) rho0^(-1/6): gamma xidot per sqrt(mu) */
+    mpm_real cross;          /* ln r beyond which y1 r^y2 >= s0 r^s1 for certain */
+    mpm_real bound_shear;    /* flow stress >= bound_shear mu + bound_stress ... */
+    mpm_real bound_stress;   /* ... at every strain and rate of an unmolten point */
+} mpm__ptw_shared;
+
+/* What one point needs of its state, before strain and rate are known. */
+typedef struct mpm__ptw_point {
+    mpm_material_state state;  /* strain and rate are overwritten as the solution tries them */
+    mpm_real shear;            /* mu */
+    mpm_real melt;             /* T_m */
+    mpm_real eta, log_eta;     /* rho/rho0 and its logarithm */
+    mpm_real rate_scale;       /* r = rate rate_scale eta^(1/6), from A 2.8 */
+} mpm__ptw_point;
+
+/* ln(rho/rho0) is needed by the melting law and by xidot only. */
+static inline mpm_real mpm__ptw_melt(const mpm_material *m, mpm_real melt_exponent, mpm_real log_eta,
+                                     mpm_real eta)
+{
+    if (m->melt == MPM_MELT_NONE) return mpm__ptw_infinity();
+    if (m->melt == MPM_MELT_CONSTANT) return m->melt_temperature;
+    return m->melt_temperature *
+           mpm__ptw_exp(2 * m->melt_a * (1 - 1 / eta) + melt_exponent * log_eta);
+}
+
+/* mu0 - D/(exp(T0/T) - 1) (A 2.6); at T = 0 it is mu0 exactly. */
+static inline mpm_real mpm__ptw_shear_mts(const mpm_material *m, mpm_real temperature)
+{
+    if (!(temperature > 0)) return m->shear_modulus;
+    return m->shear_modulus - m->shear_d / mpm__ptw_expm1(m->shear_t / temperature);
+}
+
+/* mu0 (1 + A p/eta^(1/3) - B (T - 300 K)), Steinberg's form. */
+static inline mpm_real mpm__ptw_shear_scg(const mpm_material *m, mpm_real temperature, mpm_real pressure,
+                                          mpm_real eta)
+{
+    mpm_real cold = 1 + m->shear_a * pressure / mpm__ptw_cbrt(eta);
+    return m->shear_modulus * (cold - m->shear_b * (temperature - 300));
+}
+
+static inline mpm_real mpm__ptw_shear_raw(const mpm_material *m, mpm_real temperature,
+                                          mpm_real pressure, mpm_real eta)
+{
+    switch (m->shear) {
+    case MPM_SHEAR_MTS: return mpm__ptw_shear_mts(m, temperature);
+    case MPM_SHEAR_SCG: return mpm__ptw_shear_scg(m, temperature, pressure, eta);
+    default: return m->shear_modulus;
+    }
+}
+
+static inline mpm_real mpm__ptw_shear_floor(const mpm_material *m)
+{
+    return m->shear_floor * m->shear_modulus;
+}
+
+/* The lower bound of the flow stress that spares most elastic points the full law. PTW hardens
+   from tau_y and rises with rate, so 2 mu yinf bounds it (yinf <= sinf holds for checked
+   materials); the factor below 1 covers rounding. Other laws: their stress at zero strain. */
+static inline void mpm__ptw_bound(const mpm_material *m, mpm__ptw_shared *h)
+{
+    mpm_real safe = 1 - 16 * MPM_EPSILON;
+    h->bound_shear = h->bound_stress = 0;
+    if (m->strength == MPM_STRENGTH_PTW)
+        h->bound_shear = 2 * mpm__ptw_min(m->ptw.yinf, m->ptw.sinf) * safe;
+    else if (m->strength == MPM_STRENGTH_SCG)
+        h->bound_shear = mpm__ptw_min(m->scg.y0, m->scg.ymax) / m->shear_modulus * safe;
+    else if (m->strength == MPM_STRENGTH_LINEAR && m->linear_hardening >= 0)
+        h->bound_stress = m->linear_yield * safe;
+}
+
+/* A 2.9 rises with eta up to eta_high (everywhere, unless Gamma0 - a - 1/3 < 0), so a point
+   denser than eta_low and colder than T_m(eta_low) is solid, without a further look. */
+static inline void mpm__ptw_cold(const mpm_material *m, mpm__ptw_shared *h)
+{
+    mpm_real half = m->gruneisen - m->melt_a - MPM_R(1.0) / 3;
+    h->melt_exponent = 2 * half;
+    h->eta_low = 0;
+    h->eta_high = mpm__ptw_infinity();
+    if (m->melt == MPM_MELT_SCG) {
+        h->eta_low = MPM_R(0.875);
+        if (half < 0) h->eta_high = -m->melt_a / half;
+    }
+    h->cold = mpm__ptw_melt(m, h->melt_exponent, mpm__ptw_log(h->eta_low > 0 ? h->eta_low : 1),
+                            h->eta_low);
+    h->cold *= 1 - 64 * MPM_EPSILON;
+}
+
+static inline mpm__ptw_shared mpm__ptw_share(const mpm_material *m)
+{
+    const mpm_ptw *c = &m->ptw;
+    const mpm_real pi = MPM_R(3.14159265358979323846);
+    mpm__ptw_shared h;
+    mpm__ptw_cold(m, &h);
+    mpm__ptw_bound(m, &h);
+    h.rate_factor = 0;
+    h.cross = mpm__ptw_infinity();
+    if (m->strength == MPM_STRENGTH_PTW) {
+        mpm_real atoms = mpm__ptw_cbrt(4 * pi * m->density / (3 * c->atomic_mass));
+        h.rate_factor = c->gamma * atoms / (2 * mpm__ptw_sqrt(m->density));
+        if (c->y2 > c->s1)
+            h.cross = mpm__ptw_log(c->s0 / c->y1) / (c->y2 - c->s1) + MPM_R(0.01);
+    }
+    return h;
+}
+
+/* Everything about a point that does not depend on strain and rate, its shear modulus given. */
+static inline mpm__ptw_point mpm__ptw_prepare(const mpm_material *m, const mpm__ptw_shared *h,
+                                              const mpm_material_state *s, mpm_real shear)
+{
+    mpm__ptw_point p;
+    mpm_real eta = s->density / m->density;
+    p.state = *s;
+    p.shear = shear;
+    p.eta = eta;
+    p.log_eta = 0;
+    p.rate_scale = 0;
+    if (m->melt == MPM_MELT_SCG || m->strength == MPM_STRENGTH_PTW) p.log_eta = mpm__ptw_log(eta);
+    p.melt = mpm__ptw_melt(m, h->melt_exponent, p.log_eta, eta);
+    if (m->strength == MPM_STRENGTH_PTW)
+        p.rate_scale = 1 / (h->rate_factor * mpm__ptw_sqrt(shear));
+    return p;
+}
+
+/* ---- Preston-Tonks-Wallace ------------------------------------------------------------------- */
+
+/* Saturation and yield stress over 2 mu, and their slopes with respect to L = ln r. */
+typedef struct mpm__ptw_levels {
+    mpm_real s, y, s_slope, y_slope;
+} mpm__ptw_levels;
+
+/* The erf terms of A 2.7 at argument x, with dx/dL = slope (<= 0): low + (high - low)(1 - erf). */
+static inline void mpm__ptw_thermal(const mpm_ptw *c, mpm_real x, mpm_real slope, mpm__ptw_levels *v)
+{
+    const mpm_real two_over_root_pi = MPM_R(1.12837916709551257390);
+    /* erf is 1 to the last bit of a double from 5.93 on, and of a float well before. */
+    mpm_real erf_x = x >= 6 ? 1 : mpm__ptw_erf(x);
+    mpm_real bell = x >= 6 ? 0 : -slope * two_over_root_pi * mpm__ptw_exp(-x * x);
+    v->s = c->s0 - (c->s0 - c->sinf) * erf_x;
+    v->y = c->y0 - (c->y0 - c->yinf) * erf_x;
+    v->s_slope = (c->s0 - c->sinf) * bell;
+    v->y_slope = (c->y0 - c->yinf) * bell;
+}
+
+/* Whether both erf terms certainly stay below the power laws `shock` and `low`. For x >= 0,
+   1 - erf x <= exp(-x^2) <= 1/(1 + x^2 + x^4/2 + x^6/6), which needs neither erf nor exp. */
+static inline int mpm__ptw_thermal_hidden(const mpm_ptw *c, mpm_real x, mpm_real shock, mpm_real low)
+{
+    mpm_real q = x * x;
+    mpm_real tail = (1 + 8 * MPM_EPSILON) / (1 + q * (1 + q * (MPM_R(0.5) + q / 6)));
+    mpm_real s = (c->sinf + (c->s0 - c->sinf) * tail) * (1 + 8 * MPM_EPSILON);
+    mpm_real y = (c->yinf + (c->y0 - c->yinf) * tail) * (1 + 8 * MPM_EPSILON);
+    return x >= 0 && s < shock && y < low;
+}
+
+/* A 2.7. T_hat is T/T_m, L = ln r. The shock term s0 r^s1 is computed once, so that tau_s = tau_y
+   exactly where both follow it. */
+static inline mpm__ptw_levels mpm__ptw_saturation(const mpm_material *m, const mpm__ptw_shared *h,
+                                                  mpm_real T_hat, mpm_real L)
+{
+    const mpm_ptw *c = &m->ptw;
+    mpm_real shock = c->s0 * mpm__ptw_exp(c->s1 * L);
+    mpm_real low = shock, low_slope = c->s1 * shock;
+    mpm_real x = -c->kappa * T_hat * L, x_slope = -c->kappa * T_hat;
+    mpm__ptw_levels v;
+    if (L < h->cross) {
+        mpm_real power = c->y1 * mpm__ptw_exp(c->y2 * L);
+        if (power < shock) {
+            low = power;
+            low_slope = c->y2 * power;
+        }
+    }
+    if (x < 0 && !m->erf_literal) x = x_slope = 0;
+    if (mpm__ptw_thermal_hidden(c, x, shock, low)) {
+        v.s = v.y = 0;
+        v.s_slope = v.y_slope = 0;
+    } else {
+        mpm__ptw_thermal(c, x, x_slope, &v);
+    }
+    if (shock >= v.s) {
+        v.s = shock;
+        v.s_slope = c->s1 * shock;
+    }
+    if (low >= v.y) {
+        v.y = low;
+        v.y_slope = low_slope;
+    }
+    return v;
+}
+
+/* A rate of zero lets heat do all it can: erf = 1. At T = 0 there is no heat: erf = 0 at any rate. */
+static inline mpm__ptw_levels mpm__ptw_static_levels(const mpm_ptw *c, mpm_real temperature)
+{
+    mpm__ptw_levels v;
+    mpm__ptw_thermal(c, temperature > 0 ? MPM_R(6.0) : MPM_R(0.0), 0, &v);
+    return v;
+}
+
+/* The Voce limit d = 0: tau = tau_s - (tau_s - tau_y) exp(-theta eps/(tau_s - tau_y)). */
+static inline mpm_flow mpm__ptw_voce(const mpm_ptw *c, const mpm__ptw_levels *v, mpm_real strain)
+{
+    mpm_real gap = v->s - v->y, gap_slope = v->s_slope - v->y_slope;
+    mpm_real u = c->theta * strain / gap, e = mpm__ptw_exp(-u);
+    mpm_flow f;
+    f.stress = v->s - gap * e;
+    f.strain_slope = c->theta * e;
+    f.rate_slope = v->s_slope - gap_slope * e * (1 + u);
+    return f;
+}
+
+/* alpha < 0 (tau_y > s0): A 2.4 as printed, its exponential taken out where it would overflow. */
+static inline mpm_flow mpm__ptw_harden_negative(const mpm_ptw *c, const mpm__ptw_levels *v,
+                                                mpm_real strain, mpm_real alpha)
+{
+    mpm_real beta = (v->s - v->y) / alpha, psi = mpm__ptw_expm1(beta);
+    mpm_real t = -beta - c->theta * strain / (alpha * psi);
+    mpm_real e = mpm__ptw_exp(-mpm__ptw_abs(t));
+    mpm_flow f;
+    f.stress = v->s + alpha * (t > 0 ? t + mpm__ptw_log(e - psi) : mpm__ptw_log(1 - psi * e));
+    f.strain_slope = t > 0 ? c->theta / (e - psi) : c->theta * e / (1 - psi * e);
+    f.rate_slope = v->s_slope;
+    return f;
+}
+
+/* A 2.4 over 2 mu for tau_s > tau_y, written as tau_y + alpha ln W with
+   W = 1 + psi (1 - exp(-z)), z = theta eps/(alpha psi): the same number, exactly tau_y at zero
+   strain. rate_slope is d/dL here. */
+static inline mpm_flow mpm__ptw_harden_positive(const mpm_ptw *c, const mpm__ptw_levels *v,
+                                                mpm_real strain, mpm_real alpha)
+{
+    mpm_real beta = (v->s - v->y) / alpha;
+    mpm_real psi = mpm__ptw_expm1(beta), z = c->theta * strain / (alpha * psi);
+    mpm_real gone = -mpm__ptw_expm1(-z), left = 1 - gone;
+    mpm_real W = 1 + psi * gone, log_W = mpm__ptw_log(W);
+    mpm_real alpha_slope = -v->y_slope / c->d;
+    mpm_real beta_slope = (v->s_slope - v->y_slope - beta * alpha_slope) / alpha;
+    mpm_real psi_slope = (1 + psi) * beta_slope;
+    mpm_real z_slope = -z * (alpha_slope / alpha + psi_slope / psi);
+    mpm_real W_slope = psi_slope * gone + psi * left * z_slope;
+    mpm_flow f;
+    f.stress = v->y + alpha * log_W;
+    f.strain_slope = c->theta * left / W;
+    f.rate_slope = v->y_slope + alpha_slope * log_W + alpha * W_slope / W;
+    return f;
+}
+
+/* alpha -> 0 from above (or beta too large for exp): psi (1 - exp(-z)) -> theta eps/alpha. */
+static inline mpm_flow mpm__ptw_harden_steep(const mpm_ptw *c, const mpm__ptw_levels *v,
+                                             mpm_real strain, mpm_real alpha)
+{
+    mpm_flow f;
+    mpm_real w = alpha > 0 ? c->theta * strain / alpha : 0;
+    f.stress = v->y + (alpha > 0 ? alpha * mpm__ptw_log(1 + w) : 0);
+    f.strain_slope = c->theta / (1 + w);
+    f.rate_slope = v->y_slope;
+    return f;
+}
+
+/* A 2.4 over 2 mu with all its limits. rate_slope is d/dL here. */
+static inline mpm_flow mpm__ptw_harden(const mpm_ptw *c, const mpm__ptw_levels *v, mpm_real strain)
+{
+    mpm_flow f;
+    mpm_real gap = v->s - v->y, alpha;
+    f.stress = v->s;
+    f.strain_slope = 0;
+    f.rate_slope = v->s_slope;
+    if (!(gap > 0)) return f; /* beta = psi = 0: saturated */
+    if (!(c->d > 0)) return mpm__ptw_voce(c, v, strain);
+    alpha = (c->s0 - v->y) / c->d;
+    if (alpha < 0) return mpm__ptw_harden_negative(c, v, strain, alpha);
+    if (!(gap < 80 * alpha)) return mpm__ptw_harden_steep(c, v, strain, alpha);
+    if (gap < alpha * MPM_EPSILON) return f;
+    return mpm__ptw_harden_positive(c, v, strain, alpha);
+}
+
+static inline mpm_flow mpm__ptw_flow_ptw(const mpm_material *m, const mpm__ptw_shared *h,
+                                         const mpm__ptw_point *p)
+{
+    mpm_real strain = p->state.plastic_strain, rate = p->state.plastic_rate;
+    mpm__ptw_levels v;
+    mpm_flow f;
+    if (rate > 0)
+        v = mpm__ptw_saturation(m, h, p->state.temperature / p->melt,
+                                mpm__ptw_log(rate * p->rate_scale) + p->log_eta / 6);
+    else
+        v = mpm__ptw_static_levels(&m->ptw, p->state.temperature);
+    f = mpm__ptw_harden(&m->ptw, &v, strain);
+    f.stress *= 2 * p->shear;
+    f.strain_slope *= 2 * p->shear;
+    f.rate_slope *= rate > 0 ? 2 * p->shear / rate : 0;
+    return f;
+}
+
+/* Whether a rate lies beyond r = 1: r^6 = (rate rate_scale)^6 eta needs no logarithm. */
+static inline int mpm__ptw_overdriven(const mpm__ptw_point *p, mpm_real rate)
+{
+    mpm_real r = rate * p->rate_scale, cube = r * r * r;
+    return cube * cube * p->eta > 1;
+}
+
+/* ---- the other strengths ------------------------------------------------------------------- */
+
+static inline mpm_flow mpm__ptw_flow_linear(const mpm_material *m, const mpm__ptw_point *p)
+{
+    mpm_flow f;
+    f.stress = m->linear_yield + m->linear_hardening * p->state.plastic_strain;
+    f.strain_slope = m->linear_hardening;
+    f.rate_slope = 0;
+    if (f.stress < 0) f.stress = f.strain_slope = 0; /* softened to nothing */
+    return f;
+}
+
+/* With n < 1 the printed law starts with an infinite slope; the slope (only) is therefore taken no
+   closer to zero strain than the elastic strain at first yield, a/(3 mu). */
+static inline mpm_flow mpm__ptw_flow_jc(const mpm_material *m, const mpm__ptw_point *p)
+{
+    const mpm_jc *c = &m->jc;
+    mpm_real strain = p->state.plastic_strain, rate = p->state.plastic_rate;
+    mpm_real T_star = (p->state.temperature - c->temperature) / (p->melt - c->temperature);
+    mpm_real soft = T_star > 0 ? 1 - mpm__ptw_pow(T_star, c->m) : 1;
+    mpm_real hard = c->a + (strain > 0 ? c->b * mpm__ptw_pow(strain, c->n) : 0);
+    mpm_real fast = rate > c->rate ? 1 + c->c * mpm__ptw_log(rate / c->rate) : 1;
+    mpm_real from = mpm__ptw_max(strain, c->a / (3 * p->shear));
+    mpm_flow f;
+    f.stress = hard * fast * soft;
+    f.strain_slope = 0;
+    if (from > 0 && c->b > 0) {
+        mpm_real grown = from > strain ? c->b * mpm__ptw_pow(from, c->n) : hard - c->a;
+        f.strain_slope = c->n * grown / from * fast * soft;
+    }
+    f.rate_slope = rate > c->rate ? hard * soft * c->c / rate : 0;
+    return f;
+}
+
+static inline mpm_flow mpm__ptw_flow_scg(const mpm_material *m, const mpm__ptw_point *p)
+{
+    const mpm_scg *c = &m->scg;
+    mpm_real stretch = 1 + c->beta * p->state.plastic_strain;
+    mpm_real hard = c->y0 * mpm__ptw_pow(stretch, c->n), scale = p->shear / m->shear_modulus;
+    mpm_flow f;
+    f.stress = mpm__ptw_min(hard, c->ymax) * scale;
+    f.strain_slope = hard < c->ymax ? c->n * c->beta * hard / stretch * scale : 0;
+    f.rate_slope = 0;
+    return f;
+}
+
+static inline mpm_flow mpm__ptw_flow(const mpm_material *m, const mpm__ptw_shared *h,
+                                     const mpm__ptw_point *p)
+{
+    mpm_flow f;
+    f.stress = f.strain_slope = f.rate_slope = 0;
+    if (p->state.temperature >= p->melt) return f;
+    switch (m->strength) {
+    case MPM_STRENGTH_LINEAR: return mpm__ptw_flow_linear(m, p);
+    case MPM_STRENGTH_JC: return mpm__ptw_flow_jc(m, p);
+    case MPM_STRENGTH_SCG: return mpm__ptw_flow_scg(m, p);
+    case MPM_STRENGTH_PTW: return mpm__ptw_flow_ptw(m, h, p);
+    case MPM_STRENGTH_USER: return m->strength_fn(m->strength_context, m, &p->state);
+    default: break;
+    }
+    f.stress = mpm__ptw_infinity();
+    return f;
+}
+
+/* ---- equation of state --------------------------------------------------------------------- */
+
+static inline mpm_real mpm__ptw_bulk_modulus(const mpm_material *m)
+{
+    return m->young / (3 * (1 - 2 * m->poisson));
+}
+
+/* The reference curve p_ref and the part of it that is not thermal, A of A 3.43. */
+static inline mpm_real mpm__ptw_hugoniot(const mpm_material *m, mpm_real mu)
+{
+    mpm_real stiff = m->density * m->sound_speed * m->sound_speed;
+    mpm_real range = 1 - (m->hugoniot_slope - 1) * mu;
+    if (mu < 0) return stiff * mu;
+    return stiff * mu * (1 + mu) / (range * range);
+}
+
+static inline mpm_real mpm__ptw_cold_pressure(const mpm_material *m, mpm_real mu)
+{
+    mpm_real p = mpm__ptw_hugoniot(m, mu);
+    return mu < 0 ? p : p * (1 - m->gruneisen * mu / (2 * (1 + mu)));
+}
+
+static inline mpm_status mpm__ptw_eos_range(const mpm_material *m, mpm_real density, long index,
+                                            mpm_fault *fault)
+{
+    mpm_real mu = density / m->density - 1;
+    if (!mpm__ptw_finite(density))
+        return mpm__ptw_fail(fault, MPM_ERR_NAN, "density of point", density, index);
+    if (!(density > 0))
+        return mpm__ptw_fail(fault, MPM_ERR_STATE, "density of point", density, index);
+    if (m->eos == MPM_EOS_MIE_GRUENEISEN && mu > 0 && !(1 - (m->hugoniot_slope - 1) * mu > 0))
+        return mpm__ptw_fail(fault, MPM_ERR_STATE, "density of point past the Hugoniot's range",
+                             density, index);
+    return MPM_OK;
+}
+
+/* ---- the public laws ----------------------------------------------------------------------- */
+
+MPM_API mpm_real mpm_material_shear_modulus(const mpm_material *m, const mpm_material_state *s)
+{
+    mpm_real mu = mpm__ptw_shear_raw(m, s->temperature, s->pressure, s->density / m->density);
+    return mpm__ptw_max(mu, mpm__ptw_shear_floor(m));
+}
+
+MPM_API mpm_real mpm_material_melt_temperature(const mpm_material *m, mpm_real density)
+{
+    mpm_real eta = density / m->density;
+    mpm__ptw_shared h = mpm__ptw_share(m);
+    return mpm__ptw_melt(m, h.melt_exponent, mpm__ptw_log(eta), eta);
+}
+
+MPM_API mpm_real mpm_material_attempt_rate(const mpm_material *m, const mpm_material_state *s)
+{
+    const mpm_real pi = MPM_R(3.14159265358979323846);
+    mpm_real mu = mpm_material_shear_modulus(m, s);
+    return MPM_R(0.5) * mpm__ptw_cbrt(4 * pi * s->density / (3 * m->ptw.atomic_mass)) *
+           mpm__ptw_sqrt(mu / s->density);
+}
+
+MPM_API mpm_flow mpm_material_flow(const mpm_material *m, const mpm_material_state *s)
+{
+    mpm__ptw_shared h = mpm__ptw_share(m);
+    mpm__ptw_point p = mpm__ptw_prepare(m, &h, s, mpm_material_shear_modulus(m, s));
+    return mpm__ptw_flow(m, &h, &p);
+}
+
+MPM_API mpm_real mpm_material_flow_stress(const mpm_material *m, const mpm_material_state *s)
+{
+    return mpm_material_flow(m, s).stress;
+}
+
+MPM_API mpm_status mpm_material_pressure(const mpm_material *m, mpm_real density, mpm_real energy,
+                                         mpm_real *pressure, mpm_fault *fault)
+{
+    mpm_real mu = density / m->density - 1;
+    mpm_status status = mpm__ptw_eos_range(m, density, -1, fault);
+    if (status < 0) return status;
+    if (!mpm__ptw_finite(energy)) return mpm__ptw_fail(fault, MPM_ERR_NAN, "energy", energy, -1);
+    if (m->eos == MPM_EOS_LINEAR)
+        *pressure = mpm__ptw_bulk_modulus(m) * mu;
+    else
+        *pressure = mpm__ptw_cold_pressure(m, mu) + m->gruneisen * m->density * energy;
+    return MPM_OK;
+}
+
+MPM_API mpm_status mpm_material_hugoniot_pressure(const mpm_material *m, mpm_real density,
+                                                  mpm_real *pressure, mpm_fault *fault)
+{
+    mpm_real mu = density / m->density - 1;
+    mpm_status status = mpm__ptw_eos_range(m, density, -1, fault);
+    if (status < 0) return status;
+    *pressure = m->eos == MPM_EOS_LINEAR ? mpm__ptw_bulk_modulus(m) * mu : mpm__ptw_hugoniot(m, mu);
+    return MPM_OK;
+}
+
+MPM_API void mpm_material_wave_speeds(const mpm_material *m, mpm_real density, mpm_real *longitudinal,
+                                      mpm_real *shear)
+{
+    mpm_real nu = m->poisson, modulus = m->young / ((1 + nu) * density);
+    if (longitudinal) *longitudinal = mpm__ptw_sqrt(modulus * (1 - nu) / (1 - 2 * nu));
+    if (shear) *shear = mpm__ptw_sqrt(modulus / 2);
+}
+
+/* ---- the update ---------------------------------------------------------------------------- */
+
+/* Points are worked on in groups of this many, as plain arrays on the stack. */
+enum { MPM__PTW_LANES = 64 };
+
+typedef struct mpm__ptw_lanes {
+    int first, count;
+    mpm_real rotated[6][MPM__PTW_LANES];  /* deviator of level k, rotated */
+    mpm_real trial[6][MPM__PTW_LANES];    /* trial deviator, then the new one */
+    mpm_real strain[6][MPM__PTW_LANES];   /* deviatoric strain increment */
+    mpm_real mean[MPM__PTW_LANES];        /* mean stress of level k */
+    mpm_real volume[MPM__PTW_LANES];      /* trace of the strain increment */
+    mpm_real shear[MPM__PTW_LANES];       /* mu */
+    mpm_real mises2[MPM__PTW_LANES];      /* square of the trial von Mises stress */
+    mpm_real increment[MPM__PTW_LANES];   /* plastic strain increment */
+    mpm_real flow[MPM__PTW_LANES];        /* von Mises stress after the return */
+    int yielding[MPM__PTW_LANES], yield_count;  /* points that were returned */
+} mpm__ptw_lanes;
+
+/* 0 if every number of the point is finite, else not (NaN included): x * 0 is 0 for these only. */
+static inline mpm_real mpm__ptw_probe(const mpm_block *b, int i)
+{
+    mpm_real sum = b->density[i] + b->energy[i] + b->temperature[i] + b->plastic_strain[i] +
+                   b->plastic_rate[i] + b->plastic_work[i];
+    int j;
+    for (j = 0; j < 6; j++) sum += b->strain[j][i] + b->stress[j][i];
+    for (j = 0; j < 3; j++) sum += b->spin[j][i];
+    return sum * 0;
+}
+
+/* Names what is wrong with point i, slowly; MPM_OK if nothing is. */
+static inline mpm_status mpm__ptw_diagnose(const mpm_material *m, const mpm_block *b, int i)
+{
+    mpm_real volume = b->strain[0][i] + b->strain[1][i] + b->strain[2][i];
+    mpm_real v = m->density / b->density[i], change = v * volume / (1 + volume);
+    int j;
+    for (j = 0; j < 6; j++) {
+        if (!mpm__ptw_finite(b->strain[j][i]))
+            return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "strain increment of point", b->strain[j][i], i);
+        if (!mpm__ptw_finite(b->stress[j][i]))
+            return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "stress of point", b->stress[j][i], i);
+        if (j < 3 && !mpm__ptw_finite(b->spin[j][i]))
+            return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "rotation of point", b->spin[j][i], i);
+    }
+    if (!mpm__ptw_finite(b->energy[i]))
+        return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "energy of point", b->energy[i], i);
+    if (!mpm__ptw_finite(b->temperature[i]))
+        return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "temperature of point", b->temperature[i], i);
+    if (!mpm__ptw_finite(b->plastic_strain[i]))
+        return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "plastic strain of point", b->plastic_strain[i], i);
+    if (!mpm__ptw_finite(b->plastic_rate[i]))
+        return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "plastic rate of point", b->plastic_rate[i], i);
+    if (!mpm__ptw_finite(b->plastic_work[i]))
+        return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "plastic work of point", b->plastic_work[i], i);
+    if (mpm__ptw_eos_range(m, b->density[i], i, b->fault) < 0)
+        return mpm__ptw_eos_range(m, b->density[i], i, b->fault);
+    if (!(b->temperature[i] >= 0))
+        return mpm__ptw_fail(b->fault, MPM_ERR_STATE, "temperature of point", b->temperature[i], i);
+    if (!(b->plastic_strain[i] >= 0))
+        return mpm__ptw_fail(b->fault, MPM_ERR_STATE, "plastic strain of point", b->plastic_strain[i], i);
+    if (!(volume > -1))
+        return mpm__ptw_fail(b->fault, MPM_ERR_STATE, "volume increment of point", volume, i);
+    if (m->eos == MPM_EOS_MIE_GRUENEISEN && !(1 + m->gruneisen * change / 2 > 0))
+        return mpm__ptw_fail(b->fault, MPM_ERR_STATE, "volume increment of point", volume, i);
+    return MPM_OK;
+}
+
+/* The same conditions, quickly, for a whole group: only a suspect group is diagnosed. */
+static inline mpm_status mpm__ptw_screen(const mpm_material *m, const mpm_block *b, int first, int n)
+{
+    mpm_real limit = mpm__ptw_infinity(), half = 0, sum = 0;
+    int i, bad = 0;
+    if (m->eos == MPM_EOS_MIE_GRUENEISEN) {
+        half = m->gruneisen / 2;
+        if (m->hugoniot_slope > 1) limit = m->density * (1 + 1 / (m->hugoniot_slope - 1));
+    }
+    limit *= 1 - 8 * MPM_EPSILON;
+    for (i = first; i < first + n; i++) {
+        mpm_real volume = b->strain[0][i] + b->strain[1][i] + b->strain[2][i];
+        mpm_real rho = b->density[i];
+        sum += mpm__ptw_probe(b, i);
+        bad |= !(rho > 0) | !(rho < limit) | !(b->temperature[i] >= 0) |
+               !(b->plastic_strain[i] >= 0) | !(volume > -1) |
+               !(rho * (1 + volume) + half * m->density * volume > 0);
+    }
+    if (!bad && sum == 0) return MPM_OK;
+    for (i = first; i < first + n; i++) {
+        mpm_status status = mpm__ptw_diagnose(m, b, i);
+        if (status < 0) return status;
+    }
+    return MPM_OK;
+}
+
+/* The shear modulus of every point. Neighbours often share a temperature to the last bit. */
+static inline void mpm__ptw_shear_lanes(mpm_material *m, const mpm_block *b, mpm__ptw_lanes *a)
+{
+    mpm_real least = mpm__ptw_shear_floor(m), last = -1, mu = 0;
+    int i, hits = 0;
+    for (i = 0; i < a->count; i++) {
+        mpm_real T = b->temperature[a->first + i];
+        if (T != last || m->shear == MPM_SHEAR_SCG)
+            mu = mpm__ptw_shear_raw(m, T, -a->mean[i], b->density[a->first + i] / m->density);
+        last = T;
+        hits += mu < least;
+        a->shear[i] = mpm__ptw_max(mu, least);
+    }
+    m->shear_floor_hits += (unsigned long)hits;
+}
+
+/* Splits stress and strain increment into mean and deviator (A3, A4). */
+static inline void mpm__ptw_split(const mpm_block *b, mpm__ptw_lanes *a)
+{
+    int i, j, k = a->first, n = a->count;
+    for (i = 0; i < n; i++) {
+        mpm_real mean = (b->stress[0][k + i] + b->stress[1][k + i] + b->stress[2][k + i]) / 3;
+        mpm_real volume = b->strain[0][k + i] + b->strain[1][k + i] + b->strain[2][k + i];
+        a->mean[i] = mean;
+        a->volume[i] = volume;
+    }
+    for (j = 0; j < 3; j++)
+        for (i = 0; i < n; i++) {
+            a->rotated[j][i] = b->stress[j][k + i] - a->mean[i];
+            a->strain[j][i] = b->strain[j][k + i] - a->volume[i] / 3;
+        }
+    for (j = 3; j < 6; j++)
+        for (i = 0; i < n; i++) {
+            a->rotated[j][i] = b->stress[j][k + i];
+            a->strain[j][i] = b->strain[j][k + i];
+        }
+}
+
+/* s <- R s R^T with R of Hughes and Winget: R = I + u (H + H^2), H v = h x v, h half the rotation
+   increment, u = 2/(1 + h.h). R is orthogonal for any h, so invariants are kept to rounding. */
+static inline void mpm__ptw_rotate_proper(const mpm_block *b, mpm__ptw_lanes *a)
+{
+    int i, k = a->first;
+    for (i = 0; i < a->count; i++) {
+        mpm_real x = b->spin[0][k + i] / 2, y = b->spin[1][k + i] / 2, z = b->spin[2][k + i] / 2;
+        mpm_real u = 2 / (1 + x * x + y * y + z * z);
+        mpm_real r00 = 1 - u * (y * y + z * z), r01 = u * (x * y - z), r02 = u * (x * z + y);
+        mpm_real r10 = u * (x * y + z), r11 = 1 - u * (x * x + z * z), r12 = u * (y * z - x);
+        mpm_real r20 = u * (x * z - y), r21 = u * (y * z + x), r22 = 1 - u * (x * x + y * y);
+        mpm_real sxx = a->rotated[0][i], syy = a->rotated[1][i], szz = a->rotated[2][i];
+        mpm_real syz = a->rotated[3][i], sxz = a->rotated[4][i], sxy = a->rotated[5][i];
+        mpm_real m00 = r00 * sxx + r01 * sxy + r02 * sxz, m01 = r00 * sxy + r01 * syy + r02 * syz;
+        mpm_real m02 = r00 * sxz + r01 * syz + r02 * szz, m10 = r10 * sxx + r11 * sxy + r12 * sxz;
+        mpm_real m11 = r10 * sxy + r11 * syy + r12 * syz, m12 = r10 * sxz + r11 * syz + r12 * szz;
+        mpm_real m20 = r20 * sxx + r21 * sxy + r22 * sxz, m21 = r20 * sxy + r21 * syy + r22 * syz;
+        mpm_real m22 = r20 * sxz + r21 * syz + r22 * szz;
+        a->rotated[0][i] = m00 * r00 + m01 * r01 + m02 * r02;
+        a->rotated[1][i] = m10 * r10 + m11 * r11 + m12 * r12;
+        a->rotated[2][i] = m20 * r20 + m21 * r21 + m22 * r22;
+        a->rotated[3][i] = m10 * r20 + m11 * r21 + m12 * r22;
+        a->rotated[4][i] = m00 * r20 + m01 * r21 + m02 * r22;
+        a->rotated[5][i] = m00 * r10 + m01 * r11 + m02 * r12;
+    }
+}
+
+/* s <- s + W s + s W^T with W the spin increment itself (A2). */
+static inline void mpm__ptw_rotate_jaumann(const mpm_block *b, mpm__ptw_lanes *a)
+{
+    int i, k = a->first;
+    for (i = 0; i < a->count; i++) {
+        mpm_real x = b->spin[0][k + i], y = b->spin[1][k + i], z = b->spin[2][k + i];
+        mpm_real sxx = a->rotated[0][i], syy = a->rotated[1][i], szz = a->rotated[2][i];
+        mpm_real syz = a->rotated[3][i], sxz = a->rotated[4][i], sxy = a->rotated[5][i];
+        a->rotated[0][i] += 2 * (y * sxz - z * sxy);
+        a->rotated[1][i] += 2 * (z * sxy - x * syz);
+        a->rotated[2][i] += 2 * (x * syz - y * sxz);
+        a->rotated[3][i] += x * (syy - szz) + z * sxz - y * sxy;
+        a->rotated[4][i] += y * (szz - sxx) + x * sxy - z * syz;
+        a->rotated[5][i] += z * (sxx - syy) + y * syz - x * sxz;
+    }
+}
+
+/* Trial deviator s* = s^R + 2 mu dEps' and the square of its von Mises stress (A4, A5). */
+static inline void mpm__ptw_try(mpm__ptw_lanes *a)
+{
+    int i, j, n = a->count;
+    for (j = 0; j < 6; j++)
+        for (i = 0; i < n; i++) a->trial[j][i] = a->rotated[j][i] + 2 * a->shear[i] * a->strain[j][i];
+    for (i = 0; i < n; i++) {
+        mpm_real n2 = a->trial[0][i] * a->trial[0][i] + a->trial[1][i] * a->trial[1][i] +
+                      a->trial[2][i] * a->trial[2][i];
+        mpm_real t2 = a->trial[3][i] * a->trial[3][i] + a->trial[4][i] * a->trial[4][i] +
+                      a->trial[5][i] * a->trial[5][i];
+        a->mises2[i] = MPM_R(1.5) * n2 + 3 * t2;
+    }
+}
+
+/* The flow law at plastic strain eps + d and rate d/dt, its slope taken with respect to d. */
+static inline mpm_real mpm__ptw_flow_at(const mpm_material *m, const mpm__ptw_shared *h,
+                                        mpm__ptw_point *p, mpm_real strain, mpm_real d, mpm_real dt,
+                                        mpm_real *slope)
+{
+    mpm_flow f;
+    p->state.plastic_strain = strain + d;
+    p->state.plastic_rate = d / dt;
+    f = mpm__ptw_flow(m, h, p);
+    *slope = f.strain_slope + f.rate_slope / dt;
+    return f.stress;
+}
+
+enum { MPM__PTW_ITERATIONS = 100 };
+#ifdef MPM_FLOAT
+#define MPM__PTW_TOLERANCE (32 * MPM_EPSILON)
+#else
+#define MPM__PTW_TOLERANCE 1e-10
+#endif
+
+/* The consistent return: the increment d that solves
+       mises - 3 mu d = sigma_y(eps + d, d/dt, T),
+   or 0 if the static flow stress is not reached. The left side falls and the right side rises, so
+   the root is bracketed by 0 and mises/(3 mu); Newton's steps are kept inside the bracket, which
+   shrinks around the root. The search starts from the rate of the last step: if the residual is
+   positive there, the point yields, and the static stress need not be looked at. A last Newton
+   step after the tolerance is met costs nothing and squares the error. Returns d (NaN if the law
+   gave NaN), and in *capped whether the cap ended the search. */
+static inline mpm_real mpm__ptw_return(const mpm_material *m, const mpm__ptw_shared *h,
+                                       mpm__ptw_point *p, mpm_real mises, mpm_real dt, int *capped)
+{
+    mpm_real strain = p->state.plastic_strain, d = p->state.plastic_rate * dt;
+    mpm_real stiff = 3 * p->shear, top = mises / stiff, low = 0, high = top, slope, residual;
+    mpm_real close = MPM__PTW_TOLERANCE * mises;
+    int tries, yields = 0; /* whether the static residual is known to be positive */
+    *capped = 0;
+    if (p->state.temperature >= p->melt) return top;
+    for (tries = 0; tries < MPM__PTW_ITERATIONS; tries++) {
+        if (!yields && !(d > 0)) {
+            residual = mises - mpm__ptw_flow_at(m, h, p, strain, 0, dt, &slope);
+            if (residual <= 0) return 0;
+            yields = 1;
+            d = residual / (stiff + slope);
+        }
+        if (!(d > low && d < high)) d = low + (high - low) / 2;
+        residual = mises - stiff * d - mpm__ptw_flow_at(m, h, p, strain, d, dt, &slope);
+        if (residual != residual) return residual;
+        if (residual > 0) {
+            yields = 1;
+            low = d;
+        } else {
+            high = d;
+        }
+        d += residual / (stiff + slope);
+        /* A small residual is a root only if d itself is not lost in the tolerance. */
+        if (mpm__ptw_abs(residual) <= close && (yields || stiff * d > close)) break;
+        if (yields && high - low <= MPM_EPSILON * top) break;
+    }
+    *capped = tries == MPM__PTW_ITERATIONS;
+    return mpm__ptw_min(mpm__ptw_max(d, low), high);
+}
+
+/* The staged return A6 - A8: yield at the rate of the last step, one explicit estimate of d, then
+   the flow stress at the strain and rate it gives. Returns d; *flow is the stress returned to. */
+static inline mpm_real mpm__ptw_stage(const mpm_material *m, const mpm__ptw_shared *h,
+                                      mpm__ptw_point *p, mpm_real mises, mpm_real dt, mpm_real *flow)
+{
+    mpm_real strain = p->state.plastic_strain, d, slope;
+    mpm_flow f = mpm__ptw_flow(m, h, p);
+    *flow = mises;
+    if (mises <= f.stress) return 0;
+    d = (mises - f.stress) / (3 * p->shear + f.strain_slope);
+    *flow = mpm__ptw_flow_at(m, h, p, strain, d, dt, &slope);
+    if (*flow > mises) *flow = mises;
+    return d;
+}
+
+/* Returns lane i to its flow stress: increment, flow and the scaled deviator go to *a. */
+static inline mpm_status mpm__ptw_return_lane(mpm_material *m, const mpm__ptw_shared *h,
+                                              const mpm_block *b, mpm__ptw_lanes *a, int i)
+{
+    int j, k = a->first + i, capped = 0;
+    mpm_real mises = mpm__ptw_sqrt(a->mises2[i]), factor, d, flow;
+    mpm_material_state s;
+    mpm__ptw_point p;
+    s.plastic_strain = b->plastic_strain[k];
+    s.plastic_rate = b->plastic_rate[k];
+    s.temperature = b->temperature[k];
+    s.density = b->density[k];
+    s.pressure = -a->mean[i];
+    p = mpm__ptw_prepare(m, h, &s, a->shear[i]);
+    if (m->mapping == MPM_RETURN_STAGED) {
+        d = mpm__ptw_stage(m, h, &p, mises, b->dt, &flow);
+    } else {
+        d = mpm__ptw_return(m, h, &p, mises, b->dt, &capped);
+        flow = s.temperature >= p.melt ? 0 : mpm__ptw_max(mises - 3 * p.shear * d, 0);
+    }
+    if (!mpm__ptw_finite(d)) return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "flow stress of point", d, k);
+    if (!(d > 0)) return MPM_OK;
+    factor = flow / mises;
+    for (j = 0; j < 6; j++) a->trial[j][i] *= factor;
+    a->increment[i] = d;
+    a->flow[i] = flow;
+    a->yielding[a->yield_count++] = i;
+    if (m->strength == MPM_STRENGTH_PTW && !m->erf_literal && mpm__ptw_overdriven(&p, d / b->dt))
+        m->erf_clip_hits++;
+    if (!capped) return MPM_OK;
+    m->iteration_hits++;
+    return MPM_NOT_CONVERGED;
+}
+
+/* Sorts out the points that may yield and returns them to the flow stress. Touches only *a (and
+   counters), so that a failure leaves the block as it was. */
+static inline mpm_status mpm__ptw_yield(mpm_material *m, const mpm__ptw_shared *h, const mpm_block *b,
+                                        mpm__ptw_lanes *a)
+{
+    mpm_status status = MPM_OK;
+    int i;
+    a->yield_count = 0;
+    if (m->strength == MPM_STRENGTH_ELASTIC) return MPM_OK;
+    for (i = 0; i < a->count; i++) {
+        int k = a->first + i;
+        mpm_real bound = h->bound_shear * a->shear[i] + h->bound_stress;
+        mpm_real eta = b->density[k] / m->density;
+        int solid = b->temperature[k] < h->cold && eta >= h->eta_low && eta <= h->eta_high;
+        mpm_status s;
+        if (solid && a->mises2[i] <= bound * bound) continue;
+        s = mpm__ptw_return_lane(m, h, b, a, i);
+        if (s < 0) return s;
+        if (s > 0) status = s;
+    }
+    return status;
+}
+
+/* Plastic strain, its rate, plastic work (A 4.15) and the heat of it (A 3.44), to the block. */
+static inline void mpm__ptw_commit(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a)
+{
+    int i, y;
+    for (i = 0; i < a->count; i++) b->plastic_rate[a->first + i] = 0;
+    for (y = 0; y < a->yield_count; y++) {
+        int k = a->first + a->yielding[y];
+        mpm_real d = a->increment[a->yielding[y]], work = a->flow[a->yielding[y]] * d;
+        b->plastic_rate[k] = d / b->dt;
+        b->plastic_strain[k] += d;
+        b->plastic_work[k] += work;
+        if (m->heat_fraction > 0)
+            b->temperature[k] += m->heat_fraction * work / (b->density[k] * m->specific_heat);
+    }
+}
+
+/* Pressure with the energy that its own work changes (A 3.40 - 3.43), then the full stress.
+   All energies and volumes here are per initial volume. */
+static inline void mpm__ptw_close(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a)
+{
+    int linear = m->eos == MPM_EOS_LINEAR, i, j, k = a->first;
+    mpm_real bulk = mpm__ptw_bulk_modulus(m), B = linear ? 0 : m->gruneisen;
+    mpm_real stiff = linear ? bulk : m->density * m->sound_speed * m->sound_speed;
+    mpm_real slope = m->hugoniot_slope - 1;
+    mpm_real rho0 = m->density, sound = mpm__ptw_sqrt(stiff / rho0), dt = b->dt, cell = b->cell;
+    mpm_real first = m->viscosity_linear * sound, second = m->viscosity_quadratic;
+    mpm_real work[MPM__PTW_LANES], mean[MPM__PTW_LANES], *energy = b->energy + k;
+    const mpm_real *density = b->density + k;
+    for (i = 0; i < a->count; i++)
+        work[i] = (a->rotated[0][i] + a->trial[0][i]) * a->strain[0][i] +
+                  (a->rotated[1][i] + a->trial[1][i]) * a->strain[1][i] +
+                  (a->rotated[2][i] + a->trial[2][i]) * a->strain[2][i] +
+                  2 * ((a->rotated[3][i] + a->trial[3][i]) * a->strain[3][i] +
+                       (a->rotated[4][i] + a->trial[4][i]) * a->strain[4][i] +
+                       (a->rotated[5][i] + a->trial[5][i]) * a->strain[5][i]);
+    for (i = 0; i < a->count; i++) {
+        mpm_real rho = density[i], mu = rho / rho0 - 1, v = rho0 / rho;
+        mpm_real dv = v * a->volume[i] / (1 + a->volume[i]);
+        mpm_real range = 1 - slope * mu;
+        mpm_real shock = stiff * mu * (1 + mu) / (range * range) * (1 - B * mu / (2 * (1 + mu)));
+        mpm_real A = mu < 0 || linear ? stiff * mu : shock;
+        mpm_real squeeze = cell * mpm__ptw_max(-a->volume[i], 0) / dt;
+        mpm_real q = rho * squeeze * (second * squeeze + first);
+        mpm_real E = rho0 * energy[i] + (v - dv / 2) * work[i] / 2 + dv / 2 * (a->mean[i] - q);
+        mpm_real p = (A + B * E) / (1 + B * dv / 2);
+        energy[i] = (E - dv / 2 * p) / rho0;
+        mean[i] = -(p + q);
+    }
+    for (j = 0; j < 3; j++)
+        for (i = 0; i < a->count; i++) b->stress[j][k + i] = a->trial[j][i] + mean[i];
+    for (j = 3; j < 6; j++)
+        for (i = 0; i < a->count; i++) b->stress[j][k + i] = a->trial[j][i];
+}
+
+MPM_API mpm_status mpm_material_stress(void *material, const mpm_block *block)
+{
+    mpm_material *m = (mpm_material *)material;
+    const mpm_block *b = block;
+    mpm_status status = MPM_OK, s;
+    unsigned long floor_hits = m->shear_floor_hits;
+    mpm__ptw_shared h;
+    mpm__ptw_lanes a;
+    if (b->count < 0)
+        return mpm__ptw_fail(b->fault, MPM_ERR_ARGUMENT, "count", (mpm_real)b->count, -1);
+    if (!(b->dt > 0)) return mpm__ptw_fail(b->fault, MPM_ERR_ARGUMENT, "dt", b->dt, -1);
+    h = mpm__ptw_share(m);
+    for (a.first = 0; a.first < b->count; a.first += MPM__PTW_LANES) {
+        a.count = b->count - a.first < MPM__PTW_LANES ? b->count - a.first : MPM__PTW_LANES;
+        if ((s = mpm__ptw_screen(m, b, a.first, a.count)) < 0) return s;
+        mpm__ptw_split(b, &a);
+        mpm__ptw_shear_lanes(m, b, &a);
+        if (m->rotation == MPM_ROTATION_PROPER) mpm__ptw_rotate_proper(b, &a);
+        else mpm__ptw_rotate_jaumann(b, &a);
+        mpm__ptw_try(&a);
+        if ((s = mpm__ptw_yield(m, &h, b, &a)) < 0) return s;
+        if (s > 0) status = s;
+        mpm__ptw_commit(m, b, &a);
+        mpm__ptw_close(m, b, &a);
+    }
+    if (status == MPM_OK && m->shear_floor_hits != floor_hits) status = MPM_CLAMPED;
+    return status;
+}
+
+/* ---- presets ------------------------------------------------------------------------------- */
+
+/* All in SI; the tags are those of the header's list of sources. The range of a set is that of its
+   source: [PTW] 1e-3 .. 1e12 /s, T < T_m; [S] strength 1e5 /s and above, [JC] up to about 1e5 /s
+   and strains of order 1; Hugoniots up to the pressures of the cited shock data (tens of GPa). */
+
+/* What every model of a metal shares. E = nu = 0: from G0 of [S] and K = rho c0^2 [C].
+   c0 = 0: no Hugoniot was found; the equation of state is then the linear one. */
+typedef struct mpm__ptw_metal {
+    const char *name, *model;                /* preferred strength */
+    double density, heat;                    /* kg/m^3, J/(kg K) */
+    double young, poisson;                   /* Pa, 1 */
+    double sound, slope, gruneisen;          /* m/s, 1, 1 */
+} mpm__ptw_metal;
+
+static const mpm__ptw_metal mpm__ptw_metals[] = {
+    /* rho, Cp, E, nu, c0, s, Gamma0 of the Al of source A, which prints none of the last three:
+       the values are those of the shock data for 1100-O [S] */
+    {"al", "ptw", 2700, 900, 70e9, 0.33, 5386, 1.339, 1.97},
+    {"al1100", "scg", 2707, 884, 0, 0, 5386, 1.339, 1.97},        /* [S] */
+    {"al6061-t6", "scg", 2703, 885, 0, 0, 5240, 1.40, 1.97},      /* [S] */
+    {"al7075-t6", "scg", 2803, 848, 0, 0, 5200, 1.36, 2.20},      /* [S] */
+    {"cu", "ptw", 8930, 383, 0, 0, 3940, 1.489, 2.02},            /* [S], OFHC half hard */
+    {"ni", "scg", 8900, 440, 0, 0, 4650, 1.445, 1.93},            /* [S]; Cp [M] */
+    /* [S]; its Hugoniot has further terms (S2 = -5.138), so this line is for mu up to about 0.05 */
+    {"ti", "scg", 4510, 500, 0, 0, 5020, 1.536, 1.23},
+    {"ti-6al-4v", "scg", 4419, 525, 0, 0, 5130, 1.028, 1.23},     /* [S] */
+    {"ta", "ptw", 16690, 135, 0, 0, 3410, 1.20, 1.67},            /* [S] */
+    {"zn", "scg", 7139, 389, 0, 0, 3030, 1.55, 2.24},             /* [S] */
+    {"304", "ptw", 7900, 500, 193e9, 0.29, 0, 0, 0},              /* data sheets of the grade */
+    {"4340", "jc", 7830, 477, 200e9, 0.29, 0, 0, 0}               /* [JC] and data sheets */
+};
+
+/* Steinberg-Cochran-Guinan: shear modulus, melting and strength. */
+typedef struct mpm__ptw_set_scg {
+    const char *name;
+    double shear, a, b;          /* G0 [Pa], A [1/Pa], B [1/K] */
+    double melt, melt_a;         /* T_m0 [K] of the fit at rho0, a */
+    double y0, ymax, beta, n;    /* [Pa, Pa, 1, 1] */
+} mpm__ptw_set_scg;
+
+static const mpm__ptw_set_scg mpm__ptw_sets_scg[] = {
+    /* all [S]; y0 of al1100 is [M] (0.04 GPa; a deck that circulates has ten times that) */
+    {"al1100", 27.1e9, 6.52e-11, 6.16e-4, 1220, 1.5, 0.04e9, 0.48e9, 400, 0.27},
+    {"al6061-t6", 27.6e9, 6.52e-11, 6.16e-4, 1220, 1.5, 0.29e9, 0.68e9, 125, 0.10},
+    {"al7075-t6", 26.7e9, 6.52e-11, 6.16e-4, 1220, 1.7, 0.42e9, 0.81e9, 965, 0.10},
+    {"cu", 47.7e9, 2.83e-11, 3.77e-4, 1790, 1.5, 0.12e9, 0.64e9, 36, 0.45},
+    {"ni", 85.5e9, 1.63e-11, 3.26e-4, 2330, 1.4, 0.14e9, 1.20e9, 46, 0.53},
+    {"ti", 43.4e9, 1.15e-11, 6.22e-4, 2260, 1.0, 0.71e9, 1.45e9, 780, 0.065},
+    {"ti-6al-4v", 41.9e9, 1.15e-11, 6.44e-4, 2110, 1.0, 1.33e9, 2.12e9, 12, 0.10},
+    {"ta", 69.0e9, 1.45e-11, 1.30e-4, 4340, 1.3, 0.77e9, 1.10e9, 10, 0.1},
+    {"zn", 39.5e9, 5.95e-11, 7.60e-4, 900, 1.7, 0.15e9, 0.92e9, 100, 0.20}
+};
+
+/* Johnson-Cook; reference rate 1/s, reference temperature 298 K. */
+typedef struct mpm__ptw_set_jc {
+    const char *name;
+    double a, b, n, c, m, melt;  /* Pa, Pa, 1, 1, 1, K */
+} mpm__ptw_set_jc;
+
+static const mpm__ptw_set_jc mpm__ptw_sets_jc[] = {
+    {"al1100", 148.4e6, 345.5e6, 0.183, 0.001, 0.895, 916},  /* [M] */
+    {"al6061-t6", 324e6, 114e6, 0.42, 0.002, 1.34, 925},     /* [JC] */
+    {"cu", 90e6, 292e6, 0.31, 0.025, 1.09, 1356},            /* [JC], OFHC */
+    {"ni", 163e6, 648e6, 0.33, 0.006, 1.44, 1726},           /* [M] */
+    {"ti-6al-4v", 862e6, 331e6, 0.34, 0.012, 0.8, 1878},     /* [M] */
+    {"304", 310e6, 1000e6, 0.65, 0.07, 1.0, 1673},           /* 304L, [JC] form */
+    {"4340", 792e6, 510e6, 0.26, 0.014, 1.03, 1793}          /* [JC] */
+};
+
+/* Preston-Tonks-Wallace with the shear modulus and melting law it is used with. */
+typedef struct mpm__ptw_set_ptw {
+    const char *name;
+    double theta, d, s0, sinf, kappa, gamma, y0, yinf, y1, y2, s1;
+    double atom;                 /* mass of one atom [kg] */
+    mpm_shear shear;             /* MTS: mu0, D [Pa], T0 [K]; SCG: the table above; constant: mu0 */
+    double mu0, mts_d, mts_t;
+    mpm_melt melt;
+    double melt0, melt_a;        /* [K], 1 */
+} mpm__ptw_set_ptw;
+
+static const mpm__ptw_set_ptw mpm__ptw_sets_ptw[] = {
+    /* [A] table 2.1. The table prints 4.48039e-23 kg per atom, which is grams: 26.98 u is
+       4.48039e-26 kg. T_m0: ambient melting point of Al; a: [S]. */
+    {"al", 0.01156, 3, 0.01489, 0.002819, 1.3, 2.04e-5, 0.0115, 0.002003, 0.0168, 0.2339, 0.2034,
+     4.48039e-26, MPM_SHEAR_MTS, 28.8e9, 3.44e9, 215, MPM_MELT_SCG, 933.5, 1.5},
+    /* [PTW]; shear modulus: MTS fit of Cu in use with it; melting [S]; 63.546 u */
+    {"cu", 0.025, 2, 0.0085, 0.00055, 0.11, 1e-5, 1e-4, 1e-4, 0.094, 0.575, 0.25,
+     1.055206e-25, MPM_SHEAR_MTS, 51.3e9, 3.0e9, 165, MPM_MELT_SCG, 1790, 1.5},
+    /* [PTW]; shear modulus and melting [S]; 180.948 u */
+    {"ta", 0.02, 0, 0.012, 0.00325, 0.6, 4e-5, 0.01, 0.00125, 0.012, 0.4, 0.23,
+     3.004712e-25, MPM_SHEAR_SCG, 0, 0, 0, MPM_MELT_SCG, 4340, 1.3},
+    /* [PTW]; the room temperature shear modulus of data sheets, no softening of it with
+       temperature; melting: solidus of 304; the atom is that of iron, 55.845 u */
+    {"304", 0.02, 10, 0.05, 0.0075, 0.3, 1e-3, 0.0069, 0.0015, 0.05, 0.46, 0.25,
+     9.273280e-26, MPM_SHEAR_CONSTANT, 77e9, 0, 0, MPM_MELT_CONSTANT, 1673, 0}
+};
+
+/* Linear isotropic hardening: the Taylor bar benchmark's copper, with its own moduli. */
+typedef struct mpm__ptw_set_linear {
+    const char *name;
+    double yield, hardening, young, poisson;  /* Pa, Pa, Pa, 1 */
+} mpm__ptw_set_linear;
+
+static const mpm__ptw_set_linear mpm__ptw_sets_linear[] = {
+    {"cu", 400e6, 100e6, 117e9, 0.35}
+};
+
+/* The entry of a table whose first member is the name, or NULL. */
+#define MPM__PTW_FIND(type, table, wanted) \
+    ((const type *)mpm__ptw_find(table, sizeof(type), sizeof(table) / sizeof(type), wanted))
+
+static inline const void *mpm__ptw_find(const void *table, size_t size, size_t count, const char *name)
+{
+    const char *entry = (const char *)table;
+    size_t i;
+    for (i = 0; i < count; i++, entry += size)
+        if (!strcmp(*(const char *const *)(const void *)entry, name)) return entry;
+    return NULL;
+}
+
+/* The SI value of one stress unit and so on, applied: value in SI -> value in the system. */
+static inline mpm_real mpm__ptw_stress_in(const mpm_units *u, double si)
+{
+    return (mpm_real)(si / mpm_units_stress(u));
+}
+
+/* Constant moduli, linear equation of state, no melting; strength is set by the caller. */
+static inline void mpm__ptw_use_textbook(mpm_material *m, const mpm_units *u, double young, double nu)
+{
+    m->shear = MPM_SHEAR_CONSTANT;
+    m->melt = MPM_MELT_NONE;
+    m->eos = MPM_EOS_LINEAR;
+    m->young = mpm__ptw_stress_in(u, young);
+    m->poisson = (mpm_real)nu;
+    m->shear_modulus = mpm__ptw_stress_in(u, young / (2 * (1 + nu)));
+}
+
+static inline void mpm__ptw_use_shear_scg(mpm_material *m, const mpm_units *u, const mpm__ptw_set_scg *t)
+{
+    m->shear = MPM_SHEAR_SCG;
+    m->shear_modulus = mpm__ptw_stress_in(u, t->shear);
+    m->shear_a = (mpm_real)(t->a * mpm_units_stress(u));
+    m->shear_b = (mpm_real)t->b;
+}
+
+static inline void mpm__ptw_use_scg(mpm_material *m, const mpm_units *u, const mpm__ptw_set_scg *t)
+{
+    mpm__ptw_use_shear_scg(m, u, t);
+    m->strength = MPM_STRENGTH_SCG;
+    m->melt = MPM_MELT_SCG;
+    m->melt_temperature = (mpm_real)t->melt;
+    m->melt_a = (mpm_real)t->melt_a;
+    m->scg.y0 = mpm__ptw_stress_in(u, t->y0);
+    m->scg.ymax = mpm__ptw_stress_in(u, t->ymax);
+    m->scg.beta = (mpm_real)t->beta;
+    m->scg.n = (mpm_real)t->n;
+}
+
+static inline void mpm__ptw_use_jc(mpm_material *m, const mpm_units *u, const mpm__ptw_set_jc *t)
+{
+    m->strength = MPM_STRENGTH_JC;
+    m->shear = MPM_SHEAR_CONSTANT;
+    m->shear_modulus = m->young / (2 * (1 + m->poisson));
+    m->melt = MPM_MELT_CONSTANT;
+    m->melt_temperature = (mpm_real)t->melt;
+    m->jc.a = mpm__ptw_stress_in(u, t->a);
+    m->jc.b = mpm__ptw_stress_in(u, t->b);
+    m->jc.n = (mpm_real)t->n;
+    m->jc.c = (mpm_real)t->c;
+    m->jc.m = (mpm_real)t->m;
+    m->jc.rate = (mpm_real)u->time; /* 1/s */
+    m->jc.temperature = 298;
+}
+
+static inline void mpm__ptw_use_ptw(mpm_material *m, const mpm_units *u, const mpm__ptw_set_ptw *t)
+{
+    mpm_ptw *c = &m->ptw;
+    m->strength = MPM_STRENGTH_PTW;
+    if (t->shear == MPM_SHEAR_SCG) {
+        mpm__ptw_use_shear_scg(m, u, MPM__PTW_FIND(mpm__ptw_set_scg, mpm__ptw_sets_scg, t->name));
+    } else {
+        m->shear = t->shear;
+        m->shear_modulus = mpm__ptw_stress_in(u, t->mu0);
+        m->shear_d = mpm__ptw_stress_in(u, t->mts_d);
+        m->shear_t = (mpm_real)t->mts_t;
+    }
+    m->melt = t->melt;
+    m->melt_temperature = (mpm_real)t->melt0;
+    m->melt_a = (mpm_real)t->melt_a;
+    c->theta = (mpm_real)t->theta;
+    c->d = (mpm_real)t->d;
+    c->s0 = (mpm_real)t->s0;
+    c->sinf = (mpm_real)t->sinf;
+    c->kappa = (mpm_real)t->kappa;
+    c->gamma = (mpm_real)t->gamma;
+    c->y0 = (mpm_real)t->y0;
+    c->yinf = (mpm_real)t->yinf;
+    c->y1 = (mpm_real)t->y1;
+    c->y2 = (mpm_real)t->y2;
+    c->s1 = (mpm_real)t->s1;
+    c->atomic_mass = (mpm_real)(t->atom / u->mass);
+}
+
+/* E and nu of a metal [SI]: given, or from K = rho c0^2 and G0 of the SCG table. */
+static inline void mpm__ptw_moduli(const mpm__ptw_metal *t, double *young, double *nu)
+{
+    const mpm__ptw_set_scg *g = MPM__PTW_FIND(mpm__ptw_set_scg, mpm__ptw_sets_scg, t->name);
+    *young = t->young;
+    *nu = t->poisson;
+    if (t->young <= 0 && g) {
+        double bulk = t->density * t->sound * t->sound, shear = g->shear;
+        *young = 9 * bulk * shear / (3 * bulk + shear);
+        *nu = (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear));
+    }
+}
+
+/* Sets strength, shear modulus, melting and equation of state of a metal. */
+static inline mpm_status mpm__ptw_use(mpm_material *m, const mpm__ptw_metal *t, const char *model,
+                                      mpm_fault *fault)
+{
+    const mpm__ptw_set_linear *linear = MPM__PTW_FIND(mpm__ptw_set_linear, mpm__ptw_sets_linear, t->name);
+    const mpm__ptw_set_jc *jc = MPM__PTW_FIND(mpm__ptw_set_jc, mpm__ptw_sets_jc, t->name);
+    const mpm__ptw_set_scg *scg = MPM__PTW_FIND(mpm__ptw_set_scg, mpm__ptw_sets_scg, t->name);
+    const mpm__ptw_set_ptw *ptw = MPM__PTW_FIND(mpm__ptw_set_ptw, mpm__ptw_sets_ptw, t->name);
+    const mpm_units units = m->units, *u = &units;
+    mpm_material next = *m;
+    double young, nu;
+    int known = 1, found = 1;
+    mpm__ptw_moduli(t, &young, &nu);
+    mpm__ptw_use_textbook(&next, u, young, nu);
+    next.eos = t->sound > 0 ? MPM_EOS_MIE_GRUENEISEN : MPM_EOS_LINEAR;
+    if (!strcmp(model, "elastic")) {
+        next.strength = MPM_STRENGTH_ELASTIC;
+        next.eos = MPM_EOS_LINEAR;
+    } else if (!strcmp(model, "linear")) {
+        if ((found = linear != NULL)) {
+            mpm__ptw_use_textbook(&next, u, linear->young, linear->poisson);
+            next.strength = MPM_STRENGTH_LINEAR;
+            next.linear_yield = mpm__ptw_stress_in(u, linear->yield);
+            next.linear_hardening = mpm__ptw_stress_in(u, linear->hardening);
+        }
+    } else if (!strcmp(model, "jc")) {
+        if ((found = jc != NULL)) mpm__ptw_use_jc(&next, u, jc);
+    } else if (!strcmp(model, "scg")) {
+        if ((found = scg != NULL)) mpm__ptw_use_scg(&next, u, scg);
+    } else if (!strcmp(model, "ptw")) {
+        if ((found = ptw != NULL)) mpm__ptw_use_ptw(&next, u, ptw);
+    } else {
+        known = 0;
+    }
+    if (!known) return mpm__ptw_fail(fault, MPM_ERR_UNKNOWN, "model", 0, -1);
+    if (!found) return mpm__ptw_fail(fault, MPM_ERR_UNKNOWN, "model of material", 0, -1);
+    *m = next;
+    return MPM_OK;
+}
+
+MPM_API mpm_material mpm_material_default(void)
+{
+    mpm_material m;
+    memset(&m, 0, sizeof m); /* every choice's first value is 0: elastic, constant, none, linear */
+    m.name = "";
+    m.units = mpm_units_si();
+    m.temperature = 298;
+    m.heat_fraction = MPM_R(0.9);
+    m.shear_floor = MPM_R(1e-3);
+    return m;
+}
+
+MPM_API mpm_status mpm_material_preset(mpm_material *m, const char *name, const mpm_units *units,
+                                       mpm_fault *fault)
+{
+    const mpm__ptw_metal *t = MPM__PTW_FIND(mpm__ptw_metal, mpm__ptw_metals, name);
+    mpm_material next = mpm_material_default();
+    mpm_status status;
+    if (!t) return mpm__ptw_fail(fault, MPM_ERR_UNKNOWN, "material", 0, -1);
+    if (!(units->length > 0)) return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "units.length", (mpm_real)units->length, -1);
+    if (!(units->mass > 0)) return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "units.mass", (mpm_real)units->mass, -1);
+    if (!(units->time > 0)) return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "units.time", (mpm_real)units->time, -1);
+    next.name = t->name;
+    next.units = *units;
+    next.density = (mpm_real)(t->density / mpm_units_density(units));
+    next.specific_heat = (mpm_real)(t->heat / mpm_units_specific_energy(units));
+    next.sound_speed = (mpm_real)(t->sound / mpm_units_velocity(units));
+    next.hugoniot_slope = (mpm_real)t->slope;
+    next.gruneisen = (mpm_real)t->gruneisen;
+    status = mpm__ptw_use(&next, t, t->model, fault);
+    if (status == MPM_OK) *m = next;
+    return status;
+}
+
+MPM_API mpm_status mpm_material_model(mpm_material *m, const char *model, mpm_fault *fault)
+{
+    const mpm__ptw_metal *t = MPM__PTW_FIND(mpm__ptw_metal, mpm__ptw_metals, m->name);
+    if (!t) return mpm__ptw_fail(fault, MPM_ERR_UNKNOWN, "material", 0, -1);
+    return mpm__ptw_use(m, t, model, fault);
+}
+
+MPM_API int mpm_material_preset_count(void)
+{
+    return (int)(sizeof mpm__ptw_metals / sizeof mpm__ptw_metals[0]);
+}
+
+MPM_API const char *mpm_material_preset_name(int i)
+{
+    return i >= 0 && i < mpm_material_preset_count() ? mpm__ptw_metals[i].name : NULL;
+}
+
+/* ---- the check ----------------------------------------------------------------------------- */
+
+/* low <= value <= high (inclusive; finite), or a fault that names the field. */
+static inline mpm_status mpm__ptw_within(const char *field, mpm_real value, mpm_real low, mpm_real high,
+                                         mpm_fault *fault)
+{
+    if (value >= low && value <= high && mpm__ptw_finite(value)) return MPM_OK;
+    return mpm__ptw_fail(fault, mpm__ptw_finite(value) ? MPM_ERR_ARGUMENT : MPM_ERR_NAN, field, value, -1);
+}
+
+static inline mpm_status mpm__ptw_positive(const char *field, mpm_real value, mpm_fault *fault)
+{
+    if (value > 0 && mpm__ptw_finite(value)) return MPM_OK;
+    return mpm__ptw_fail(fault, mpm__ptw_finite(value) ? MPM_ERR_ARGUMENT : MPM_ERR_NAN, field, value, -1);
+}
+
+/* Returns from the calling check at its first fault. */
+#define MPM__PTW_REQUIRE(check)          \
+    do {                                 \
+        mpm_status require_ = (check);   \
+        if (require_ < 0) return require_; \
+    } while (0)
+
+static inline mpm_status mpm__ptw_check_ptw(const mpm_ptw *c, mpm_fault *fault)
+{
+    const mpm_real big = mpm__ptw_infinity();
+    MPM__PTW_REQUIRE(mpm__ptw_positive("ptw.theta", c->theta, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.d", c->d, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_positive("ptw.s0", c->s0, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.sinf", c->sinf, 0, c->s0, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.y0", c->y0, 0, c->s0, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.yinf", c->yinf, 0, mpm__ptw_min(c->y0, c->sinf), fault));
+    MPM__PTW_REQUIRE(mpm__ptw_positive("ptw.y1", c->y1, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.y2", c->y2, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.s1", c->s1, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.kappa", c->kappa, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_positive("ptw.gamma", c->gamma, fault));
+    return mpm__ptw_positive("ptw.atomic_mass", c->atomic_mass, fault);
+}
+
+static inline mpm_status mpm__ptw_check_jc(const mpm_material *m, mpm_fault *fault)
+{
+    const mpm_jc *c = &m->jc;
+    const mpm_real big = mpm__ptw_infinity();
+    MPM__PTW_REQUIRE(mpm__ptw_within("jc.a", c->a, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("jc.b", c->b, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("jc.n", c->n, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("jc.c", c->c, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_positive("jc.m", c->m, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_positive("jc.rate", c->rate, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("jc.temperature", c->temperature, 0, big, fault));
+    if (m->melt != MPM_MELT_NONE && !(m->melt_temperature > c->temperature))
+        return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "melt_temperature", m->melt_temperature, -1);
+    return MPM_OK;
+}
+
+static inline mpm_status mpm__ptw_check_strength(const mpm_material *m, mpm_fault *fault)
+{
+    const mpm_real big = mpm__ptw_infinity();
+    switch (m->strength) {
+    case MPM_STRENGTH_LINEAR:
+        MPM__PTW_REQUIRE(mpm__ptw_within("linear_yield", m->linear_yield, 0, big, fault));
+        return mpm__ptw_within("linear_hardening", m->linear_hardening, -m->shear_modulus, big, fault);
+    case MPM_STRENGTH_SCG:
+        MPM__PTW_REQUIRE(mpm__ptw_within("scg.y0", m->scg.y0, 0, big, fault));
+        MPM__PTW_REQUIRE(mpm__ptw_within("scg.ymax", m->scg.ymax, 0, big, fault));
+        MPM__PTW_REQUIRE(mpm__ptw_within("scg.beta", m->scg.beta, 0, big, fault));
+        return mpm__ptw_within("scg.n", m->scg.n, 0, big, fault);
+    case MPM_STRENGTH_JC: return mpm__ptw_check_jc(m, fault);
+    case MPM_STRENGTH_PTW: return mpm__ptw_check_ptw(&m->ptw, fault);
+    case MPM_STRENGTH_USER:
+        if (!m->strength_fn) return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "strength_fn", 0, -1);
+        return MPM_OK;
+    case MPM_STRENGTH_ELASTIC: return MPM_OK;
+    }
+    return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "strength", (mpm_real)m->strength, -1);
+}
+
+static inline mpm_status mpm__ptw_check_shear(const mpm_material *m, mpm_fault *fault)
+{
+    const mpm_real big = mpm__ptw_infinity();
+    MPM__PTW_REQUIRE(mpm__ptw_positive("shear_modulus", m->shear_modulus, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_positive("shear_floor", m->shear_floor, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("shear_floor", m->shear_floor, 0, 1, fault));
+    if (m->shear == MPM_SHEAR_MTS) {
+        MPM__PTW_REQUIRE(mpm__ptw_within("shear_d", m->shear_d, 0, big, fault));
+        MPM__PTW_REQUIRE(mpm__ptw_positive("shear_t", m->shear_t, fault));
+    } else if (m->shear == MPM_SHEAR_SCG) {
+        MPM__PTW_REQUIRE(mpm__ptw_within("shear_a", m->shear_a, 0, big, fault));
+        MPM__PTW_REQUIRE(mpm__ptw_within("shear_b", m->shear_b, 0, big, fault));
+    } else if (m->shear != MPM_SHEAR_CONSTANT) {
+        return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "shear", (mpm_real)m->shear, -1);
+    }
+    return MPM_OK;
+}
+
+static inline mpm_status mpm__ptw_check_melt_and_eos(const mpm_material *m, mpm_fault *fault)
+{
+    const mpm_real big = mpm__ptw_infinity();
+    if (m->melt != MPM_MELT_NONE && m->melt != MPM_MELT_CONSTANT && m->melt != MPM_MELT_SCG)
+        return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "melt", (mpm_real)m->melt, -1);
+    if (m->eos != MPM_EOS_LINEAR && m->eos != MPM_EOS_MIE_GRUENEISEN)
+        return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "eos", (mpm_real)m->eos, -1);
+    if (m->melt != MPM_MELT_NONE)
+        MPM__PTW_REQUIRE(mpm__ptw_positive("melt_temperature", m->melt_temperature, fault));
+    if (m->melt == MPM_MELT_SCG) {
+        MPM__PTW_REQUIRE(mpm__ptw_within("melt_a", m->melt_a, 0, big, fault));
+        /* With less, T_m would fall on compression from rho0. */
+        MPM__PTW_REQUIRE(mpm__ptw_within("gruneisen", m->gruneisen, MPM_R(1.0) / 3, big, fault));
+    }
+    if (m->eos == MPM_EOS_MIE_GRUENEISEN) {
+        MPM__PTW_REQUIRE(mpm__ptw_positive("sound_speed", m->sound_speed, fault));
+        MPM__PTW_REQUIRE(mpm__ptw_within("hugoniot_slope", m->hugoniot_slope, 0, big, fault));
+        MPM__PTW_REQUIRE(mpm__ptw_within("gruneisen", m->gruneisen, 0, big, fault));
+    }
+    return MPM_OK;
+}
+
+MPM_API mpm_status mpm_material_check(const mpm_material *m, mpm_fault *fault)
+{
+    const mpm_real big = mpm__ptw_infinity();
+    MPM__PTW_REQUIRE(mpm__ptw_positive("density", m->density, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("temperature", m->temperature, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("heat_fraction", m->heat_fraction, 0, 1, fault));
+    if (m->strength != MPM_STRENGTH_ELASTIC && m->heat_fraction > 0)
+        MPM__PTW_REQUIRE(mpm__ptw_positive("specific_heat", m->specific_heat, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_positive("young", m->young, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("poisson", m->poisson, -1, MPM_R(0.5), fault));
+    if (!(m->poisson > -1 && m->poisson < MPM_R(0.5)))
+        return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "poisson", m->poisson, -1);
+    MPM__PTW_REQUIRE(mpm__ptw_within("viscosity_linear", m->viscosity_linear, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("viscosity_quadratic", m->viscosity_quadratic, 0, big, fault));
+    if (m->mapping != MPM_RETURN_CONSISTENT && m->mapping != MPM_RETURN_STAGED)
+        return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "mapping", (mpm_real)m->mapping, -1);
+    if (m->rotation != MPM_ROTATION_PROPER && m->rotation != MPM_ROTATION_JAUMANN)
+        return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "rotation", (mpm_real)m->rotation, -1);
+    MPM__PTW_REQUIRE(mpm__ptw_check_shear(m, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_check_melt_and_eos(m, fault));
+    return mpm__ptw_check_strength(m, fault);
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* MPM_PTW_IMPLEMENTED */
+#endif

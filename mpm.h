@@ -82,6 +82,40 @@ typedef double mpm_real;
 #define MPM_API extern
 #endif
 
+#ifdef MPM_FLOAT /* other types, other names: mixed units must not link */
+#define mpm_sphere mpm_sphere_f32
+#define mpm_ellipsoid mpm_ellipsoid_f32
+#define mpm_cylinder mpm_cylinder_f32
+#define mpm_box mpm_box_f32
+#define mpm_shape_contains mpm_shape_contains_f32
+#define mpm_desc_default mpm_desc_default_f32
+#define mpm_body_desc_default mpm_body_desc_default_f32
+#define mpm_shape_count mpm_shape_count_f32
+#define mpm_desc_check mpm_desc_check_f32
+#define mpm_bytes mpm_bytes_f32
+#define mpm_init mpm_init_f32
+#define mpm_free mpm_free_f32
+#define mpm_body_add mpm_body_add_f32
+#define mpm_grow mpm_grow_f32
+#define mpm_grow_bytes mpm_grow_bytes_f32
+#define mpm_wave_speed_p mpm_wave_speed_p_f32
+#define mpm_wave_speed_s mpm_wave_speed_s_f32
+#define mpm_time_step mpm_time_step_f32
+#define mpm_step mpm_step_f32
+#define mpm_locate mpm_locate_f32
+#define mpm_p2g mpm_p2g_f32
+#define mpm_forces mpm_forces_f32
+#define mpm_grid_update mpm_grid_update_f32
+#define mpm_contact_find mpm_contact_find_f32
+#define mpm_contact_apply mpm_contact_apply_f32
+#define mpm_g2p mpm_g2p_f32
+#define mpm_musl mpm_musl_f32
+#define mpm_stress mpm_stress_f32
+#define mpm_move mpm_move_f32
+#define mpm_body_totals mpm_body_totals_f32
+#define mpm_memory mpm_memory_f32
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -317,6 +351,7 @@ typedef struct mpm_node {
     mpm_real force[3];     /* internal + external + contact */
     mpm_real velocity[3];  /* at k+1, mapped back from the updated points (MUSL) */
     mpm_real gradient[3];  /* mass gradient, filled at contact nodes only */
+    mpm_real bond[2];      /* sum of D over surface points and of its weights (mpm_bond.h) */
     int32_t index;         /* number of the node in the grid */
     int32_t next;          /* next slot of this node, or -1 */
     int32_t body;
@@ -361,7 +396,7 @@ typedef struct mpm_world {
     mpm_body *body;
     int32_t bodies;
     mpm_ledger ledger;
-    mpm_fault fault;         /* the first failure since init */
+    mpm_fault fault;         /* the last failure */
     long retired;            /* points that left the grid */
     long sorts;              /* times the points were put back in cell order */
     long notices;            /* positive statuses returned by materials */

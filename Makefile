@@ -1,0 +1,50 @@
+# mpm.h - the library is its headers; this builds the examples, the tests and the figures.
+#   make            everything into build/
+#   make run        the main job: an aluminium particle hits an aluminium plate at 810 m/s
+#   make test       every test, double and float, and the compile tests
+#   make bench      speed, as ratios measured in one run
+#   make clean
+
+# Contraction off: the same source gives the same bits with and without fused multiply-add.
+NATIVE := $(shell echo 'int x;' | $(CC) -march=native -xc -c -o /dev/null - 2>/dev/null && echo -march=native)
+CFLAGS ?= -O3 $(NATIVE) -ffp-contract=off -fno-math-errno -fno-trapping-math
+STRICT  = -std=c99 -pedantic -Wall -Wextra -Wconversion -Wshadow
+INCLUDE = -I. -Iexamples -Itests
+HEADERS = $(wildcard mpm*.h examples/*.h tests/*.h bench/*.h)
+
+EXAMPLES = $(patsubst examples/%.c,build/%,$(wildcard examples/*.c))
+TESTS    = $(patsubst tests/%.c,build/tests/%,$(wildcard tests/[0-9]*.c))
+FLOATS   = $(patsubst tests/%.c,build/tests/%_f32,$(wildcard tests/[0-9]*.c))
+BENCH    = $(patsubst bench/%.c,build/bench/%,$(wildcard bench/*.c))
+
+all: $(EXAMPLES) $(TESTS) $(FLOATS) $(BENCH)
+
+run: build/impact
+	build/impact --out build/impact-out
+
+test: $(EXAMPLES) $(TESTS) $(FLOATS)
+	@sh tests/run.sh $(TESTS) $(FLOATS) -- "$(CC)"
+
+bench: $(BENCH)
+	@for b in $(BENCH); do $$b || exit 1; done
+
+build/%: examples/%.c $(HEADERS)
+	@mkdir -p build
+	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $< -o $@ $(LDFLAGS) -lm
+
+build/tests/%_f32: tests/%.c $(HEADERS)
+	@mkdir -p build/tests
+	$(CC) $(STRICT) $(CFLAGS) -DMPM_FLOAT $(INCLUDE) $< -o $@ $(LDFLAGS) -lm
+
+build/tests/%: tests/%.c $(HEADERS)
+	@mkdir -p build/tests
+	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $< -o $@ $(LDFLAGS) -lm
+
+build/bench/%: bench/%.c $(HEADERS)
+	@mkdir -p build/bench
+	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $< -o $@ $(LDFLAGS) -lm
+
+clean:
+	rm -rf build
+
+.PHONY: all run test bench clean

@@ -1,0 +1,76 @@
+#!/bin/sh
+# Compile tests: every header alone, twice, in two translation units, static, with float, from C99 and
+# C++, by gcc and clang where they are installed, all warnings as errors; and the symbols they leave.
+set -u
+dir=build/tests/compile
+rm -rf "$dir"
+mkdir -p "$dir"
+passed=0
+failed=0
+strict="-pedantic -Wall -Wextra -Wconversion -Wshadow -Werror -I."
+check() { # name, command...
+    name=$1
+    shift
+    if "$@" >"$dir/out" 2>&1; then
+        passed=$((passed + 1))
+        echo "ok - $name"
+    else
+        failed=$((failed + 1))
+        echo "not ok - $name: $(head -n 3 "$dir/out" | tr '\n' ' ')"
+    fi
+}
+# One symbol of each header that its implementation must provide.
+symbol() {
+    case $1 in
+    mpm.h) echo 'mpm_version()[0]' ;;
+    mpm_ptw.h) echo 'mpm_material_preset_count()' ;;
+    mpm_bond.h) echo '(mpm_bond_check(0, 0) != MPM_OK)' ;;
+    mpm_io.h) echo 'mpm_io_status_text(MPM_OK)[0]' ;;
+    mpm_spray.h) echo '(int)mpm_spray_bytes(0)' ;;
+    esac
+}
+headers=$(ls mpm*.h)
+for h in $headers; do
+    s=$(symbol "$h")
+    printf '#define MPM_IMPLEMENTATION\n#include "%s"\n#include "%s"\nint main(int n, char **a) { (void)a; return n > 9 ? (int)(%s) : 0; }\n' \
+        "$h" "$h" "$s" >"$dir/whole.c"
+    printf '#include "%s"\nint other(void);\nint other(void) { return (int)(%s); }\n' "$h" "$s" >"$dir/user.c"
+    printf '#define MPM_STATIC\n#include "%s"\nint main(int n, char **a) { (void)a; return n > 9 ? (int)(%s) : 0; }\n' \
+        "$h" "$s" >"$dir/static.c"
+    cp "$dir/whole.c" "$dir/whole.cpp"
+    cp "$dir/user.c" "$dir/user.cpp"
+    for real in double float; do
+        flag=
+        [ $real = float ] && flag=-DMPM_FLOAT
+        for cc in gcc clang; do
+            command -v $cc >/dev/null || continue
+            check "$h $real $cc c99, twice, alone" $cc -std=c99 $strict $flag -O1 "$dir/whole.c" -o "$dir/whole" -lm
+            check "$h $real $cc c99, two units" $cc -std=c99 $strict $flag "$dir/whole.c" "$dir/user.c" -o "$dir/two" -lm
+            check "$h $real $cc c99, static" $cc -std=c99 $strict $flag -O1 "$dir/static.c" -o "$dir/static" -lm
+            check "$h $real $cc header only" $cc -std=c99 $strict $flag -c "$dir/user.c" -o "$dir/user.o"
+        done
+        for cxx in g++ clang++; do
+            command -v $cxx >/dev/null || continue
+            check "$h $real $cxx c++11" $cxx -std=c++11 -Wall -Wextra -Werror -I. $flag "$dir/whole.cpp" "$dir/user.cpp" -o "$dir/cpp" -lm
+        done
+        if command -v nm >/dev/null; then
+            $1 -std=c99 -I. $flag -c "$dir/whole.c" -o "$dir/whole.o"
+            $1 -std=c99 -I. $flag -c "$dir/static.c" -o "$dir/static.o"
+            pattern=' [A-TV-Z] (mpm_|main$)'
+            [ $real = float ] && pattern=' [A-TV-Z] (mpm_.*_f32$|mpm_(version|status_text|units_.*)$|main$)'
+            check "$h $real external symbols" sh -c "! nm '$dir/whole.o' | grep -E ' [A-TV-Z] ' | grep -vE '$pattern'"
+            check "$h $real static leaves none" sh -c "! nm '$dir/static.o' | grep -E ' [A-TV-Z] ' | grep -vE ' main\$'"
+        fi
+    done
+done
+for tool in gcc clang g++ clang++ nm; do
+    command -v $tool >/dev/null || echo "skip - $tool is not installed: its compile tests were not run"
+done
+# Units compiled with different real types must not link.
+printf '#define MPM_IMPLEMENTATION\n#include "mpm.h"\nint main(void) { return 0; }\n' >"$dir/whole.c"
+printf '#include "mpm.h"\nint other(mpm_world *w);\nint other(mpm_world *w) { return mpm_step(w, 1); }\n' >"$dir/user.c"
+$1 -std=c99 -I. -c "$dir/whole.c" -o "$dir/whole.o"
+$1 -std=c99 -I. -DMPM_FLOAT -c "$dir/user.c" -o "$dir/user.o"
+check "double and float units do not link" sh -c "! $1 '$dir/whole.o' '$dir/user.o' -o '$dir/mixed' -lm"
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]

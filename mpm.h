@@ -350,7 +350,8 @@ typedef struct mpm_node {
     mpm_real momentum[3];  /* at k, then k+1 */
     mpm_real force[3];     /* internal + external + contact */
     mpm_real velocity[3];  /* at k+1, mapped back from the updated points (MUSL) */
-    mpm_real gradient[3];  /* mass gradient, filled at contact nodes only */
+    mpm_real gradient[3];  /* sum of m grad N: out of the body; at contact nodes only */
+    mpm_real reaction[3];  /* momentum given by rigid walls in this step */
     mpm_real bond[2];      /* sum of D over surface points and of its weights (mpm_bond.h) */
     int32_t index;         /* number of the node in the grid */
     int32_t next;          /* next slot of this node, or -1 */
@@ -374,15 +375,18 @@ typedef struct mpm_pair {
     int32_t a, b;        /* slots; b belongs to the higher-numbered body */
     mpm_real normal[3];  /* unit, outward of a, into b; zero where no normal can be told */
     mpm_real bond;       /* nodal D: at 1 or more the pair holds together when separating */
+    mpm_real impulse[3]; /* momentum that a got and b gave in this step */
+    int held;            /* 1 if the bond gave it */
 } mpm_pair;
 
-/* Where energy and momentum went, summed over the steps. */
+/* Where energy and momentum went, summed over the steps. A nodal force f does the work
+   f dt . (v_k + v_musl) / 2 on the points, exactly: so kinetic + internal + absorbed + contact + bond
+   + walls - gravity is constant but for the error of the stress work, integrated in time. */
 typedef struct mpm_ledger {
     double absorbed;     /* energy taken by the viscous dampers */
     double contact;      /* energy lost in contact: nodal impact and friction */
     double bond;         /* energy lost in holding bonds */
     double walls;        /* energy lost at rigid walls */
-    double transfer;     /* kinetic energy lost between grid and points */
     double gravity;      /* work done by gravity */
     double impulse[3];   /* momentum brought in by dampers, sides and gravity */
 } mpm_ledger;
@@ -488,8 +492,8 @@ MPM_API void mpm_contact_apply(mpm_world *w, mpm_real dt);
 /* Velocity of the points from nodal accelerations (A 3.32, first half). */
 MPM_API void mpm_g2p(mpm_world *w, mpm_real dt);
 
-/* Nodal velocities from the updated points (A 3.33, 3.34): the M of MUSL. */
-MPM_API void mpm_musl(mpm_world *w);
+/* Nodal velocities from the updated points (A 3.33, 3.34): the M of MUSL. Keeps the energy ledger. */
+MPM_API void mpm_musl(mpm_world *w, mpm_real dt);
 
 /* Strain and rotation increments (A 3.35), density (A 3.36), then the bodies' constitutive update.
    MPM_ERR_STATE / NAN: fault names field, value and point; the step is then incomplete. */
@@ -1707,8 +1711,8 @@ static inline void mpm__walls(mpm_world *w, mpm_node *n, mpm_real dt)
             if (d != axis) change[d] = (keep - 1) * before;
             n->momentum[d] += change[d];
             n->force[d] += change[d] / dt;
+            n->reaction[d] += change[d];
             w->ledger.impulse[d] += (double)change[d];
-            w->ledger.walls -= (double)(change[d] * (before + n->momentum[d]) / (2 * n->mass));
         }
     }
 }
@@ -1869,8 +1873,10 @@ MPM_API void mpm_grid_update(mpm_world *w, mpm_real dt)
 
 /* ---- contact --------------------------------------------------------------------------------- */
 
-/* Mass gradient at the nodes of a run (A 3.30). It points INTO the body. In axisymmetry the
-   gradient of the ring's mass has a radial term of its own. */
+/* The sum of m grad N(x_p) at the nodes of a run (A 3.30). grad N is taken at the point, towards the
+   node: at a surface node, which has points on one side only, the sum points OUT of the body. (The
+   gradient of the mass density, which points into it, is its negative.) In axisymmetry rings grow
+   with the radius, which adds a term; inside a uniform body the sum then vanishes there too. */
 MPM__KERNEL void mpm__gradient_run(mpm_world *w, const mpm_run *r, int k, int ky, int hoop)
 {
     const mpm_points *q = &w->points;
@@ -1910,7 +1916,7 @@ static inline int mpm__unit(const mpm_real *g, mpm_real scale, mpm_real *n)
     return 1;
 }
 
-/* The normal of a pair, outward of a: along the gradient of b, against that of a. Gradients are
+/* The normal of a pair, outward of a: along the gradient sum of a, against that of b. The sums are
    divided by the bodies' initial densities, which makes them volume gradients. */
 static inline void mpm__pair_normal(const mpm_world *w, mpm_pair *pair)
 {
@@ -1920,8 +1926,8 @@ static inline void mpm__pair_normal(const mpm_world *w, mpm_pair *pair)
     mpm_real ga[3], gb[3], mean[3], na[3] = {0, 0, 0}, nb[3] = {0, 0, 0}, la = 0, lb = 0;
     int d, has_a, has_b, use_b = 1;
     for (d = 0; d < 3; d++) {
-        ga[d] = -a->gradient[d] / ra;
-        gb[d] = b->gradient[d] / rb;
+        ga[d] = a->gradient[d] / ra;
+        gb[d] = -b->gradient[d] / rb;
         mean[d] = ga[d] + gb[d];
         la += ga[d] * ga[d];
         lb += gb[d] * gb[d];
@@ -2011,9 +2017,9 @@ MPM_API void mpm_contact_apply(mpm_world *w, mpm_real dt)
     w->held = 0;
     if (w->desc.contact == MPM_CONTACT_NONE) return;
     for (i = 0; i < w->pairs; i++) {
-        const mpm_pair *pair = &w->pair[i];
+        mpm_pair *pair = &w->pair[i];
         mpm_node *a = &w->node[pair->a], *b = &w->node[pair->b];
-        mpm_real j[3], toward = 0, loss = 0;
+        mpm_real j[3], toward = 0;
         int approaching, bonded;
         mpm__sticking(a, b, j);
         for (d = 0; d < 3; d++) toward -= j[d] * pair->normal[d];
@@ -2023,28 +2029,22 @@ MPM_API void mpm_contact_apply(mpm_world *w, mpm_real dt)
         if (approaching && w->desc.contact == MPM_CONTACT_FRICTION) mpm__coulomb(pair->normal, w->desc.friction, j);
         mpm__constrain(w, a, j, NULL);
         for (d = 0; d < 3; d++) {
-            const mpm_real va = a->momentum[d] / a->mass, vb = b->momentum[d] / b->mass;
-            loss -= j[d] * (va - vb) + MPM_R(0.5) * j[d] * j[d] * (1 / a->mass + 1 / b->mass);
+            pair->impulse[d] = j[d];
             a->momentum[d] += j[d];
             b->momentum[d] -= j[d];
             a->force[d] += j[d] / dt;
             b->force[d] -= j[d] / dt;
         }
-        if (bonded) {
-            w->ledger.bond += (double)loss;
-            w->held++;
-        } else {
-            w->ledger.contact += (double)loss;
-        }
+        pair->held = bonded;
+        w->held += bonded;
     }
 }
 
 /* ---- back to the points ---------------------------------------------------------------------- */
 
-MPM__KERNEL void mpm__g2p_run(mpm_world *w, const mpm_run *r, int k, int ky, mpm_real dt, double *gained)
+MPM__KERNEL void mpm__g2p_run(mpm_world *w, const mpm_run *r, int k, int ky, mpm_real dt)
 {
-    const mpm_points *q = &w->points;
-    mpm_real A[3][MPM__SUPPORT], dv[3][MPM__LANES], sum = 0;
+    mpm_real A[3][MPM__SUPPORT];
     mpm__weights s;
     int32_t at;
     int n, p, d;
@@ -2052,34 +2052,48 @@ MPM__KERNEL void mpm__g2p_run(mpm_world *w, const mpm_run *r, int k, int ky, mpm
     MPM__EACH_PIECE(r, at, n) {
         mpm__weigh(w, r, at, n, k, ky, &s);
         for (d = 0; d < 3; d++) {
-            mpm_real *v = q->v[d] + at;
-            for (p = 0; p < n; p++) dv[d][p] = dt * mpm__value(&s, p, k, ky, A[d]);
-            for (p = 0; p < n; p++) v[p] += dv[d][p];
+            mpm_real *v = w->points.v[d] + at;
+            for (p = 0; p < n; p++) v[p] += dt * mpm__value(&s, p, k, ky, A[d]);
         }
-        for (p = 0; p < n; p++)
-            sum += q->mass[at + p] * (dv[0][p] * dv[0][p] + dv[1][p] * dv[1][p] + dv[2][p] * dv[2][p]);
     }
-    *gained += (double)sum;
 }
 
 MPM_API void mpm_g2p(mpm_world *w, mpm_real dt)
 {
-    double points = 0, nodes = 0;
-    int32_t i;
-    int d;
-#define MPM__CALL(k, ky, hoop) mpm__g2p_run(w, run, k, ky, dt, &points)
+#define MPM__CALL(k, ky, hoop) mpm__g2p_run(w, run, k, ky, dt)
     MPM__EACH_RUN(w, MPM__CALL);
 #undef MPM__CALL
-    /* The grid gains sum(m a^2) dt^2 / 2 beyond P.a dt, the points, smoothing a, a little less. */
-    for (i = 0; i < w->nodes; i++) {
-        const mpm_node *n = &w->node[i];
-        if (n->mass > w->desc.mass_cutoff * w->body[n->body].point_mass)
-            for (d = 0; d < 3; d++) nodes += (double)(n->force[d] * dt * (n->force[d] * dt / n->mass));
-    }
-    w->ledger.transfer += (nodes - points) / 2;
 }
 
-MPM_API void mpm_musl(mpm_world *w)
+/* The mean nodal velocity of the step, through which nodal forces work on the points. */
+static inline mpm_real mpm__mean_velocity(const mpm_node *n, int d, mpm_real dt)
+{
+    return MPM_R(0.5) * ((n->momentum[d] - n->force[d] * dt) / n->mass + n->velocity[d]);
+}
+
+/* Energy lost in contact, in bonds and at walls. */
+static inline void mpm__account(mpm_world *w, mpm_real dt)
+{
+    int32_t i;
+    int d;
+    for (i = 0; i < w->pairs; i++) {
+        const mpm_pair *pair = &w->pair[i];
+        const mpm_node *a = &w->node[pair->a], *b = &w->node[pair->b];
+        double loss = 0;
+        for (d = 0; d < 3; d++)
+            loss -= (double)(pair->impulse[d] * (mpm__mean_velocity(a, d, dt) - mpm__mean_velocity(b, d, dt)));
+        if (pair->held) w->ledger.bond += loss;
+        else w->ledger.contact += loss;
+    }
+    for (i = 0; i < w->nodes; i++) {
+        const mpm_node *n = &w->node[i];
+        for (d = 0; d < 3; d++)
+            if (n->reaction[d] < 0 || n->reaction[d] > 0)
+                w->ledger.walls -= (double)(n->reaction[d] * mpm__mean_velocity(n, d, dt));
+    }
+}
+
+MPM_API void mpm_musl(mpm_world *w, mpm_real dt)
 {
     int32_t i;
     int d;
@@ -2088,9 +2102,12 @@ MPM_API void mpm_musl(mpm_world *w)
 #undef MPM__CALL
     for (i = 0; i < w->nodes; i++) {
         mpm_node *n = &w->node[i];
-        const mpm_real f = n->mass > 0 ? 1 / n->mass : 0;
+        for (d = 0; d < 3; d++) n->velocity[d] = n->mass > 0 ? n->velocity[d] / n->mass : 0;
+    }
+    mpm__account(w, dt);
+    for (i = 0; i < w->nodes; i++) {
+        mpm_node *n = &w->node[i];
         int s;
-        for (d = 0; d < 3; d++) n->velocity[d] *= f;
         if (!n->sides) continue;
         mpm__constrain(w, n, n->velocity, NULL);
         for (s = 0; s < 6; s++)
@@ -2248,7 +2265,7 @@ MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt)
     mpm_contact_find(w);
     mpm_contact_apply(w, dt);
     mpm_g2p(w, dt);
-    mpm_musl(w);
+    mpm_musl(w, dt);
     if (mpm_stress(w, dt) < 0) return w->fault.status;
     mpm_move(w, dt);
     return s;

@@ -1,0 +1,341 @@
+/* impact - a metal particle hits a plate: does it bond? (source A, chapters 4 and 5)
+
+   The main job is an aluminium sphere of 14 um at 810 m/s on an aluminium plate, a quarter of it,
+   80 ns. Expect: without bonding it rebounds at some tens of m/s; with the defaults it stays
+   (mean rebound velocity under 1 m/s), about one contacting point in ten bonded, mean plastic strain
+   about 0.8, hottest at the rim. Source A: critical velocity 824 m/s, PBCP 4.8 %.
+
+   The loop in main() is the method, one call per phase. SPDX-License-Identifier: MIT */
+#define MPM_IMPLEMENTATION
+#include "impact_case.h"
+#include "options.h"
+
+#include <time.h>
+
+typedef struct output {
+    const char *folder;
+    long frames;
+    int quiet;
+} output;
+
+static int complain(const char *message)
+{
+    fprintf(stderr, "error: %s\n", message);
+    return 0;
+}
+
+static int report(const mpm_fault *fault, const char *what)
+{
+    char text[256], line[400];
+    mpm_io_fault_text(text, sizeof text, fault);
+    snprintf(line, sizeof line, "%s: %s", what, text);
+    return complain(line);
+}
+
+/* folder/name */
+static const char *file_in(const char *folder, const char *name, char *path, size_t n)
+{
+    snprintf(path, n, "%s/%s", folder, name);
+    return path;
+}
+
+/* Two cuts of the whole cross-section: plastic strain and temperature. */
+static void describe_cuts(const impact *s, const impact_case *c, mpm_io_cut_desc cut[2], const char *title,
+                          const char *time)
+{
+    const mpm_world *w = &s->world;
+    const double edge = 1.1 * c->substrate_diameter / 2;
+    int i;
+    for (i = 0; i < 2; i++) {
+        cut[i] = mpm_io_cut_of(w, i == 0 ? w->points.plastic_strain : w->points.temperature);
+        cut[i].at = w->desc.geometry == MPM_3D && w->desc.side[2] == MPM_SIDE_SYMMETRY ? c->spacing / 2 : 0;
+        cut[i].mirror = w->desc.side[0] == MPM_SIDE_SYMMETRY;
+        cut[i].window[0] = -edge;
+        cut[i].window[1] = edge;
+        cut[i].window[2] = -1.05 * c->substrate_height;
+        cut[i].window[3] = 1.1 * (c->diameter + (c->gap > 0 ? c->gap : 0));
+        cut[i].length_unit = "um";
+        cut[i].time = time;
+    }
+    cut[0].title = title;
+    cut[0].label = "effective plastic strain";
+    cut[0].low = 0;
+    cut[0].high = 4;
+    cut[1].label = "temperature (K)";
+    cut[1].map = MPM_IO_HEAT;
+    cut[1].low = (double)s->material.temperature;
+    cut[1].high = (double)s->material.melt_temperature;
+}
+
+static int write_picture(const impact *s, const impact_case *c, const char *path)
+{
+    mpm_io_cut_desc cut[2];
+    mpm_fault fault;
+    char time[32], title[96];
+    snprintf(time, sizeof time, "t = %.1f ns", (double)s->world.time * 1e3);
+    snprintf(title, sizeof title, "%s, %g um at %g m/s", c->material, c->diameter, c->velocity);
+    describe_cuts(s, c, cut, title, time);
+    if (mpm_io_cut_png(path, cut, 2, 2, 800, &fault) < 0) return report(&fault, path);
+    return 1;
+}
+
+/* All that ParaView can show, in um, m/s, MPa, K. */
+static int write_points(const impact *s, const char *folder, const char *name)
+{
+    const mpm_world *w = &s->world;
+    const mpm_points *p = &w->points;
+    mpm_io_vtu_desc d = mpm_io_vtu_desc_default();
+    mpm_io_field field[11];
+    mpm_fault fault;
+    char path[1024];
+    int32_t *body = (int32_t *)malloc((size_t)p->count * sizeof *body);
+    int a, ok;
+    if (!body) return complain("no memory for output");
+    mpm_io_body_numbers(w, body);
+    field[0] = mpm_io_vector("velocity (m/s)", p->v[0], p->v[1], p->v[2], 1);
+    field[1] = mpm_io_tensor("stress (MPa)", p->stress[0], p->stress[1], p->stress[2], p->stress[3], p->stress[4],
+                             p->stress[5], 1);
+    field[2] = mpm_io_scalar("density (g/cm3)", p->density, 1);
+    field[3] = mpm_io_scalar("temperature (K)", p->temperature, 1);
+    field[4] = mpm_io_scalar("plastic strain", p->plastic_strain, 1);
+    field[5] = mpm_io_scalar("plastic strain rate (1/us)", p->plastic_rate, 1);
+    field[6] = mpm_io_scalar("plastic energy density (MPa)", p->plastic_work, 1);
+    field[7] = mpm_io_scalar("bond D", p->bond, 1);
+    field[8] = mpm_io_int32("body", body);
+    field[9] = mpm_io_int32("id", p->id);
+    field[10] = mpm_io_uint8("surface", p->flags);
+    d.count = (size_t)p->count;
+    for (a = 0; a < 3; a++) d.x[a] = p->x[a];
+    d.fields = field;
+    d.field_count = 11;
+    d.time = (double)w->time * 1e3;
+    d.float32 = 1;
+    d.note = "impact: lengths um, time ns";
+    ok = mpm_io_vtu(file_in(folder, name, path, sizeof path), &d, &fault) >= 0;
+    free(body);
+    return ok ? 1 : report(&fault, path);
+}
+
+/* Frame number `frame` of the series: points for ParaView and a picture. */
+static int write_frame(const impact *s, const impact_case *c, const output *o, long frame)
+{
+    char name[64], path[1024];
+    mpm_fault fault;
+    snprintf(name, sizeof name, "points_%04ld.vtu", frame);
+    if (!write_points(s, o->folder, name)) return 0;
+    if (mpm_io_pvd_add(file_in(o->folder, "impact.pvd", path, sizeof path), name, (double)s->world.time * 1e3,
+                       &fault) < 0)
+        return report(&fault, path);
+    snprintf(name, sizeof name, "frame_%04ld.png", frame);
+    return write_picture(s, c, file_in(o->folder, name, path, sizeof path));
+}
+
+static int write_summary(const impact *s, const impact_case *c, const output *o, const option *options, int n,
+                         double cpu)
+{
+    const impact_result r = impact_measure(s, c);
+    const mpm_world *w = &s->world;
+    char path[1024], text[256];
+    mpm_fault fault;
+    mpm_io_json j;
+    int i;
+    mpm_io_json_begin(&j, file_in(o->folder, "summary.json", path, sizeof path), &fault);
+    mpm_io_json_number(&j, "pbcp_percent", r.bond.pbcp);
+    mpm_io_json_number(&j, "abp", r.bond.abp);
+    mpm_io_json_integer(&j, "contacted_points", r.bond.contacted);
+    mpm_io_json_integer(&j, "bonded_points", r.bond.bonded);
+    mpm_io_json_integer(&j, "held_pairs", w->held);
+    mpm_io_json_number(&j, "v_rest_filtered_m_s", r.rebound.filtered);
+    mpm_io_json_number(&j, "v_rest_mean_m_s", r.rebound.mean);
+    mpm_io_json_number(&j, "v_noise_m_s", r.rebound.noise);
+    mpm_io_json_number(&j, "substrate_drift_m_s", r.substrate_drift);
+    mpm_io_json_number(&j, "restitution_ratio", r.restitution);
+    mpm_io_json_number(&j, "flattening", r.flattening);
+    mpm_io_json_number(&j, "eps_mean", r.particle.plastic_strain_mean);
+    mpm_io_json_number(&j, "plastic_energy_density_mean_MPa", r.particle.plastic_work_mean);
+    mpm_io_json_number(&j, "temperature_max_K", r.all.temperature_max);
+    mpm_io_json_integer(&j, "points", r.all.points);
+    mpm_io_json_integer(&j, "ejected_points", r.rebound.ejected);
+    mpm_io_json_integer(&j, "retired_points", w->retired);
+    mpm_io_json_integer(&j, "steps", w->steps);
+    mpm_io_json_number(&j, "dt_ns", (double)s->dt * 1e3);
+    mpm_io_json_number(&j, "time_ns", (double)w->time * 1e3);
+    mpm_io_json_number(&j, "cpu_seconds", cpu);
+    mpm_io_json_number(&j, "point_steps_per_second", cpu > 0 ? (double)w->steps * (double)r.all.points / cpu : 0);
+    mpm_io_json_number(&j, "bytes_per_point", (double)mpm_memory(w) / (double)r.all.points);
+    mpm_io_json_number(&j, "mass_error", r.mass_error);
+    mpm_io_json_number(&j, "momentum_error", r.momentum_error);
+    mpm_io_json_number(&j, "energy_error", r.energy_error);
+    mpm_io_json_number(&j, "energy_unaccounted", r.energy_unaccounted);
+    mpm_io_json_number(&j, "energy_absorbed_fraction", w->ledger.absorbed / s->start.kinetic);
+    mpm_io_json_number(&j, "energy_contact_fraction", w->ledger.contact / s->start.kinetic);
+    mpm_io_json_number(&j, "energy_bond_fraction", w->ledger.bond / s->start.kinetic);
+    mpm_io_json_integer(&j, "floor_hits", s->bond.floor_hits);
+    mpm_io_json_integer(&j, "bond_increments", s->bond.increments);
+    mpm_io_json_integer(&j, "shear_floor_hits", (long long)s->material.shear_floor_hits);
+    mpm_io_json_integer(&j, "iteration_hits", (long long)s->material.iteration_hits);
+    mpm_io_json_integer(&j, "sorts", w->sorts);
+    mpm_io_json_open(&j, "options");
+    for (i = 0; i < n; i++) {
+        option_text(&options[i], text, sizeof text);
+        if (options[i].type == OPTION_REAL) mpm_io_json_number(&j, options[i].name, *(double *)options[i].value);
+        else if (options[i].type == OPTION_LONG) mpm_io_json_integer(&j, options[i].name, *(long *)options[i].value);
+        else mpm_io_json_string(&j, options[i].name, text);
+    }
+    mpm_io_json_close(&j);
+    if (mpm_io_json_end(&j, &fault) < 0) return report(&fault, path);
+    return 1;
+}
+
+static void print_table(const impact *s, const impact_case *c, double cpu)
+{
+    const impact_result r = impact_measure(s, c);
+    const mpm_world *w = &s->world;
+    const int stays = fabs(r.rebound.mean - r.substrate_drift) <= 5 && w->held > 0;
+    printf("\n  %s on %s, %g um at %g m/s after %.4g ns: %s\n\n", c->material, c->material, c->diameter, c->velocity,
+           (double)w->time * 1e3, stays ? "stays" : "rebounds");
+    printf("  rebound velocity, mean          %10.3f m/s\n", r.rebound.mean);
+    printf("  rebound velocity, |v| <= 60 m/s %10.3f m/s  (%.4f of the impact velocity)\n", r.rebound.filtered,
+           r.restitution);
+    printf("  velocity noise in the particle  %10.3f m/s\n", r.rebound.noise);
+    printf("  substrate drift                 %10.3f m/s\n", r.substrate_drift);
+    printf("  PBCP                            %10.3f %%    (%ld of %ld contacted points)\n", r.bond.pbcp,
+           r.bond.bonded, r.bond.contacted);
+    printf("  ABP                             %10.4f\n", r.bond.abp);
+    printf("  node pairs held by the bond     %10ld\n", w->held);
+    printf("  mean plastic strain             %10.4f\n", r.particle.plastic_strain_mean);
+    printf("  mean plastic energy density     %10.2f MPa\n", r.particle.plastic_work_mean);
+    printf("  flattening                      %10.4f\n", r.flattening);
+    printf("  highest temperature             %10.1f K\n", r.all.temperature_max);
+    printf("  points ejected, retired         %10ld, %ld of %ld\n", r.rebound.ejected, w->retired, r.all.points);
+    printf("  energy: absorbed by dampers     %10.3f %%    lost in contact %.3f %%, in the bond %.3f %%\n",
+           100 * w->ledger.absorbed / s->start.kinetic, 100 * w->ledger.contact / s->start.kinetic,
+           100 * w->ledger.bond / s->start.kinetic);
+    printf("  errors: mass %.1e, momentum %.1e, energy unaccounted %.3f %%\n", r.mass_error, r.momentum_error,
+           100 * r.energy_unaccounted);
+    printf("  bond floor acted                %10ld times of %ld\n", s->bond.floor_hits, s->bond.increments);
+    printf("  %ld steps of %.4g ps, %.1f s CPU, %.2f million point-steps/s, %.0f bytes per point\n", w->steps,
+           (double)s->dt * 1e6, cpu, cpu > 0 ? 1e-6 * (double)w->steps * (double)r.all.points / cpu : 0,
+           (double)mpm_memory(w) / (double)r.all.points);
+}
+
+/* The progress line, about twice a second of CPU time. */
+static void show_progress(const impact *s, clock_t begun, clock_t *shown)
+{
+    mpm_io_progress p;
+    char line[160];
+    if ((double)(clock() - *shown) < 0.5 * (double)CLOCKS_PER_SEC) return;
+    *shown = clock();
+    memset(&p, 0, sizeof p);
+    p.step = s->world.steps;
+    p.steps = s->steps;
+    p.time = (double)s->world.time * 1e3;
+    p.time_unit = "ns";
+    p.points = (double)s->world.points.count;
+    p.elapsed = (double)(clock() - begun) / (double)CLOCKS_PER_SEC;
+    mpm_io_progress_text(line, sizeof line, &p);
+    printf("\r%-90s", line);
+    fflush(stdout);
+}
+
+/* Time integration: one call per phase. */
+static int run(impact *s, const impact_case *c, const output *o, double *cpu)
+{
+    mpm_world *w = &s->world;
+    const mpm_real dt = s->dt;
+    clock_t begun = clock(), shown = begun, writing = 0, mark;
+    long frame = 0;
+    for (;;) {
+        if (o->frames > 0 && w->steps * (o->frames > 1 ? o->frames - 1 : 1) >= frame * s->steps) {
+            mark = clock();
+            if (!write_frame(s, c, o, frame)) return 0;
+            frame++;
+            writing += clock() - mark;
+        }
+        if (w->steps >= s->steps) break;
+
+        mpm_status status = mpm_locate(w);           /* points in cell order, nodes for every body */
+        if (status == MPM_ERR_FULL) {                /* ejected points touch ever more nodes */
+            if (mpm_grow(w, NULL, 0) < 0) return report(&w->fault, "growing the grid");
+            continue;
+        }
+        if (status < 0) return report(&w->fault, "locate");
+        mpm_p2g(w);                                  /* A 3.23, 3.24 */
+        mpm_forces(w, dt);                           /* A 3.25 - 3.27, 3.45, 3.46 */
+        mpm_grid_update(w, dt);                      /* A 3.28 */
+        mpm_contact_find(w);                         /* A 3.30 */
+        mpm_bond_grow(&s->bond, w, dt);              /* A 4.16, 4.17 */
+        mpm_bond_nodes(&s->bond, w);                 /* A 4.6, 4.7 */
+        mpm_contact_apply(w, dt);                    /* A 3.29, 3.31 */
+        mpm_g2p(w, dt);                              /* A 3.32, velocities */
+        mpm_musl(w, dt);                             /* A 3.33, 3.34 */
+        if (mpm_stress(w, dt) < 0) return report(&w->fault, "stress"); /* A 3.35 - 3.44 */
+        mpm_move(w, dt);                             /* A 3.32, positions */
+
+        if (!o->quiet) show_progress(s, begun, &shown);
+    }
+    if (!o->quiet) printf("\r%-90s\r", "");
+    *cpu = (double)(clock() - begun - writing) / (double)CLOCKS_PER_SEC;
+    return 1;
+}
+
+int main(int argc, char **argv)
+{
+    impact_case c = impact_case_default();
+    output o = {"impact-out", 9, 0};
+    const option options[] = {
+        {"diameter", OPTION_REAL, &c.diameter, "particle diameter, um"},
+        {"velocity", OPTION_REAL, &c.velocity, "impact velocity, m/s"},
+        {"cell", OPTION_REAL, &c.cell, "grid cell edge, um"},
+        {"spacing", OPTION_REAL, &c.spacing, "distance of material points, um"},
+        {"substrate-diameter", OPTION_REAL, &c.substrate_diameter, "um"},
+        {"substrate-height", OPTION_REAL, &c.substrate_height, "um"},
+        {"time", OPTION_REAL, &c.time, "simulated time, ns"},
+        {"dt-factor", OPTION_REAL, &c.dt_factor, "time step over the critical step of a 0.5 um cell"},
+        {"bond", OPTION_TEXT, &c.bond, "energy|none"},
+        {"gc", OPTION_REAL, &c.gc, "critical bond energy, J/m2"},
+        {"gdot", OPTION_REAL, &c.gdot, "critical bond energy rate, J/m2/us"},
+        {"floor", OPTION_REAL, &c.floor, "least value of the rate factor of the bond threshold"},
+        {"symmetry", OPTION_TEXT, &c.symmetry, "quarter|full"},
+        {"geometry", OPTION_TEXT, &c.geometry, "3d|axisymmetric"},
+        {"functions", OPTION_TEXT, &c.functions, "shape functions: linear|gimp"},
+        {"friction", OPTION_REAL, &c.friction, "Coulomb coefficient between the bodies"},
+        {"normal", OPTION_TEXT, &c.normal, "contact normal: ranked|mvg|average|vertical"},
+        {"material", OPTION_TEXT, &c.material, "material of both bodies"},
+        {"plasticity", OPTION_TEXT, &c.plasticity, "return mapping: consistent|staged"},
+        {"gap", OPTION_REAL, &c.gap, "distance of the bodies at the start, um"},
+        {"margin", OPTION_REAL, &c.margin, "free grid around the bodies, um; below 0: one diameter"},
+        {"grid-offset", OPTION_REAL, &c.offset, "height of a grid plane above the interface, um"},
+        {"frames", OPTION_LONG, &o.frames, "pictures and ParaView files, evenly in time, both ends included"},
+        {"out", OPTION_TEXT, &o.folder, "output folder"},
+        {"quiet", OPTION_FLAG, &o.quiet, "no progress line, no table"},
+    };
+    const int n = (int)(sizeof options / sizeof options[0]);
+    const char *about = "A metal particle hits a plate of the same metal: material point method with bonding.\n"
+                        "Writes summary.json, impact.png, impact.pvd (ParaView) and frames into the output folder.";
+    char message[300], path[1024];
+    mpm_fault fault;
+    impact s;
+    double cpu = 0;
+    int parsed = options_parse(argc, argv, about, options, n), ok;
+    if (parsed) return parsed < 0 ? 1 : 0;
+    if (o.frames < 0 || o.frames > 9999) {
+        fprintf(stderr, "error: --frames %ld: must be 0 .. 9999\n", o.frames);
+        return 1;
+    }
+    if (!impact_begin(&s, &c, message, sizeof message)) {
+        complain(message);
+        return 1;
+    }
+    ok = mpm_io_make_directory(o.folder, &fault) >= 0 || report(&fault, o.folder);
+    if (ok && o.frames > 0)
+        ok = mpm_io_pvd_begin(file_in(o.folder, "impact.pvd", path, sizeof path), &fault) >= 0 || report(&fault, path);
+    ok = ok && run(&s, &c, &o, &cpu) && write_summary(&s, &c, &o, options, n, cpu);
+    if (ok && o.frames > 0) ok = write_picture(&s, &c, file_in(o.folder, "impact.png", path, sizeof path));
+    if (ok && !o.quiet) {
+        print_table(&s, &c, cpu);
+        printf("\n  %s/summary.json%s\n", o.folder, o.frames > 0 ? ", impact.png, impact.pvd" : "");
+    }
+    mpm_free(&s.world);
+    return ok ? 0 : 1;
+}

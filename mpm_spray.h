@@ -986,7 +986,7 @@ static inline mpm_status mpm__spray_check_domain(const mpm_spray_desc *d, mpm_fa
     mpm_status status;
     int n = 0, k;
     for (k = 0; k < 3; k++) {
-        r[n++] = mpm__spray_rule_of(low[k], d->low[k], d->low[k] < d->high[k]);
+        r[n++] = mpm__spray_rule_of(low[k], d->low[k], !(d->low[k] >= d->high[k]));
         r[n++] = mpm__spray_rule_of(high[k], d->high[k], d->high[k] > d->low[k]);
     }
     r[n++] = mpm__spray_rule_of("plane_count", (mpm_real)d->plane_count,
@@ -1511,7 +1511,7 @@ static inline mpm_real mpm__spray_bin_edge(const mpm_spray *s)
         }
     for (k = 0; k < 3; k++) volume *= (high[k] - low[k]) / least; /* in bins of the least edge */
     if (!(volume > s->live)) return least;
-    return least * mpm__spray_min(4, mpm__spray_max(1, mpm__spray_cbrt(volume / (mpm_real)s->live) / 2));
+    return least * mpm__spray_min(4, mpm__spray_max(1, mpm__spray_cbrt(volume / (mpm_real)s->live) / 3));
 }
 
 MPM_API void mpm_spray_bin(mpm_spray *s)

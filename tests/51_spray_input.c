@@ -1,0 +1,188 @@
+/* Bad input to the spray: every wrong value is refused with its name. SPDX-License-Identifier: MIT */
+#define MPM_IMPLEMENTATION
+#include "mpm_spray.h"
+
+#include <string.h>
+
+#include "check.h"
+
+/* An action that has to succeed (as a function: the check macros evaluate twice). */
+static void done(const char *what, mpm_status status) { CHECK_EQUAL(what, status, MPM_OK); }
+
+static mpm_real not_a_number(void)
+{
+    mpm_real zero = 0;
+    return zero / zero;
+}
+
+/* The description d must be refused with `status`, naming `field` and holding `value`. */
+static void refused(const mpm_spray_desc *d, mpm_status status, const char *field, mpm_real value)
+{
+    mpm_spray s;
+    mpm_fault f;
+    mpm_status got = mpm_spray_init(&s, d, NULL, 0);
+    CHECK_EQUAL(field, got, status);
+    CHECK_TRUE("... is named", s.fault.field && !strcmp(s.fault.field, field));
+    CHECK_TRUE("... with its value", s.fault.value == value || (value != value && s.fault.value != s.fault.value));
+    CHECK_EQUAL("... by the check alone too", mpm_spray_check(d, &f), status);
+    CHECK_EQUAL("... and it has no size", mpm_spray_bytes(d), 0);
+    mpm_spray_free(&s);
+}
+
+#define REFUSED(member, bad, status, name)             \
+    do {                                               \
+        mpm_spray_desc d = mpm_spray_desc_default();   \
+        d.member = bad;                                \
+        refused(&d, status, name, (mpm_real)d.member); \
+    } while (0)
+#define WRONG(member, bad) REFUSED(member, bad, MPM_ERR_ARGUMENT, #member)
+#define NAN_IN(member) REFUSED(member, not_a_number(), MPM_ERR_NAN, #member)
+
+static void test_values(void)
+{
+    WRONG(density, -1);
+    WRONG(median_radius, MPM_R(-80e-6));
+    WRONG(median_radius, 0);
+    WRONG(size_shape, 0);
+    WRONG(diameter_min, -1);
+    WRONG(diameter_max, MPM_R(0.021)); /* wider than the nozzle */
+    WRONG(nozzle_radius, 0);
+    WRONG(feed, 0);
+    WRONG(feed, -5);
+    WRONG(batch, -1);
+    WRONG(release[0], -1);
+    WRONG(release[1], -1);
+    WRONG(gas_speed, 0);
+    WRONG(gas_density, -1);
+    WRONG(gas_viscosity, 0);
+    WRONG(core_length, -1);
+    WRONG(core_blend, 0);
+    WRONG(friction, -1);
+    WRONG(friction_speed, 0);
+    WRONG(restitution, MPM_R(1.5));
+    WRONG(alpha, -1);
+    WRONG(gamma_target, -1);
+    WRONG(gamma_deposit, -1);
+    WRONG(stand_off, MPM_R(-0.1));
+    WRONG(stand_off, MPM_R(0.001)); /* inside the nozzle */
+    WRONG(low[1], MPM_R(0.06));
+    WRONG(dt, 0);
+    WRONG(dt, MPM_R(1e-3)); /* 50 mm in one step: no straight path */
+    WRONG(theta, MPM_R(1.5));
+    WRONG(tolerance, 0);
+    WRONG(iterations, 0);
+    WRONG(contacts_max, 0);
+    WRONG(capacity, 0);
+    WRONG(total, -1);
+    WRONG(target_radius, 0);
+    WRONG(target_thickness, -1);
+    WRONG(late, 0);
+    WRONG(plane_count, 9);
+    NAN_IN(median_radius);
+    NAN_IN(feed);
+    NAN_IN(release[1]);
+    NAN_IN(gas_speed);
+    NAN_IN(alpha);
+    NAN_IN(stand_off);
+    NAN_IN(dt);
+    NAN_IN(high[2]);
+    REFUSED(particle.shear, -1, MPM_ERR_ARGUMENT, "shear");
+    REFUSED(target.yield, not_a_number(), MPM_ERR_NAN, "yield");
+    REFUSED(gas, MPM_SPRAY_GAS_USER, MPM_ERR_ARGUMENT, "gas"); /* without a function */
+}
+
+static void test_planes(void)
+{
+    mpm_spray_plane p;
+    mpm_spray_desc d = mpm_spray_desc_default();
+    memset(&p, 0, sizeof p);
+    d.planes = &p;
+    d.plane_count = 1;
+    refused(&d, MPM_ERR_ARGUMENT, "normal of plane", 0);
+    p.normal[0] = -2;
+    p.velocity[1] = 3;
+    p.target = 1; /* a moving target */
+    refused(&d, MPM_ERR_ARGUMENT, "velocity of plane", 3);
+}
+
+static void bad_gas(void *user, mpm_real time, const mpm_real x[3], mpm_real u[3])
+{
+    (void)user;
+    (void)x;
+    u[0] = time > MPM_R(1e-4) ? not_a_number() : 50;
+    u[1] = u[2] = 0;
+}
+
+static void test_run(void)
+{
+    static double memory[1000];
+    mpm_spray s;
+    mpm_spray_ball b;
+    mpm_spray_desc d = mpm_spray_desc_default();
+    mpm_status status = MPM_OK;
+    CHECK_EQUAL("caller's memory too small", mpm_spray_init(&s, &d, memory, sizeof memory), MPM_ERR_MEMORY);
+    d.capacity = 60;
+    done("init", mpm_spray_init(&s, &d, NULL, 0));
+    while (status >= 0 && s.tally.step < 1000) status = mpm_spray_step(&s);
+    CHECK_EQUAL("more particles than the capacity", status, MPM_ERR_FULL);
+    CHECK_TRUE("... is named", !strcmp(s.fault.field, "capacity") && s.fault.value == 60);
+    CHECK_EQUAL("... with all that fitted in flight", s.live, 60);
+    mpm_spray_free(&s);
+
+    d = mpm_spray_desc_default();
+    d.gas = MPM_SPRAY_GAS_USER;
+    d.gas_fn = bad_gas;
+    status = mpm_spray_init(&s, &d, NULL, 0);
+    while (status >= 0 && s.tally.step < 1000) status = mpm_spray_step(&s);
+    CHECK_EQUAL("a gas that is not a number stops the run", status, MPM_ERR_NAN);
+    CHECK_TRUE("... at its time", s.tally.step >= 19 && s.tally.step <= 21);
+
+    memset(&b, 0, sizeof b);
+    b.density = 1;
+    CHECK_EQUAL("a particle without radius", mpm_spray_add(&s, &b), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... is named", !strcmp(s.fault.field, "radius of particle"));
+    b.radius = 1;
+    b.v[2] = not_a_number();
+    CHECK_EQUAL("a particle with a velocity that is not a number", mpm_spray_add(&s, &b), MPM_ERR_NAN);
+    mpm_spray_free(&s);
+}
+
+static void test_saved(void)
+{
+    static char buffer[2000], old[2000];
+    mpm_spray s;
+    mpm_spray_ball b;
+    mpm_spray_desc d = mpm_spray_desc_default();
+    size_t bytes;
+    d.batch = 0;
+    d.capacity = 2;
+    memset(&b, 0, sizeof b);
+    b.radius = MPM_R(1e-4);
+    b.density = 1000;
+    done("init", mpm_spray_init(&s, &d, NULL, 0));
+    done("add", mpm_spray_add(&s, &b));
+    bytes = mpm_spray_saved_bytes(&s);
+    CHECK_TRUE("it fits the test's buffer", bytes <= sizeof buffer);
+    CHECK_EQUAL("no room to save", mpm_spray_save(&s, buffer, bytes - 1), MPM_ERR_MEMORY);
+    CHECK_EQUAL("save", mpm_spray_save(&s, buffer, bytes), MPM_OK);
+    CHECK_EQUAL("a state cut short", mpm_spray_load(&s, buffer, bytes - 1), MPM_ERR_MEMORY);
+    CHECK_EQUAL("the whole state", mpm_spray_load(&s, buffer, bytes), MPM_OK);
+    memcpy(old, buffer, sizeof old);
+    old[10] = '9'; /* the version */
+    CHECK_EQUAL("a state of another version", mpm_spray_load(&s, old, bytes), MPM_ERR_VERSION);
+    mpm_spray_free(&s);
+    d.capacity = 1;
+    done("init", mpm_spray_init(&s, &d, NULL, 0));
+    buffer[16] = 2; /* the number in flight */
+    CHECK_EQUAL("more particles than the capacity", mpm_spray_load(&s, buffer, sizeof buffer), MPM_ERR_FULL);
+    mpm_spray_free(&s);
+}
+
+int main(void)
+{
+    test_values();
+    test_planes();
+    test_run();
+    test_saved();
+    return check_end();
+}

@@ -272,7 +272,7 @@ typedef struct mpm_desc {
     mpm_normal_rule normal;
     mpm_real friction;       /* Coulomb coefficient between bodies, >= 0 */
     mpm_real gravity[3];     /* [length/time^2] */
-    mpm_real mass_cutoff;    /* nodes lighter than this share of a mean point's mass are passed over */
+    mpm_real mass_cutoff;    /* nodes lighter than this share of a mean point's mass are passed over; 0 */
     int32_t points;          /* capacity, all bodies; see mpm_shape_count */
     int32_t bodies;          /* capacity */
     int32_t nodes;           /* capacity of (node, body) pairs; 0: estimated */
@@ -551,6 +551,11 @@ MPM_API const char *mpm_version(void);
 
 #define MPM__LANES 32   /* points of a run treated together */
 #define MPM__SUPPORT 27 /* most nodes a point touches */
+#ifdef MPM_FLOAT
+#define MPM__HAIR MPM_R(1e-5) /* cells; see mpm__weights_axis */
+#else
+#define MPM__HAIR 1e-9
+#endif
 #define MPM__PI MPM_R(3.14159265358979323846)
 
 #ifdef __cplusplus
@@ -817,7 +822,6 @@ MPM_API mpm_desc mpm_desc_default(void)
     mpm_desc d;
     memset(&d, 0, sizeof d);
     d.cells[0] = d.cells[1] = d.cells[2] = 1;
-    d.mass_cutoff = MPM_EPSILON * 4096;
     return d;
 }
 
@@ -1101,30 +1105,29 @@ static inline mpm_real mpm__point_mass(const mpm_desc *d, const mpm_body_desc *b
     return d->geometry == MPM_AXISYMMETRIC ? 2 * MPM__PI * x[0] * square : square;
 }
 
-/* The share of a cylinder that the symmetry planes leave in the grid. */
-static inline mpm_real mpm__kept(const mpm_desc *d)
+/* The share of a shape that the symmetry planes leave in the grid. */
+static inline mpm_real mpm__kept(const mpm_desc *d, const mpm_body_desc *b)
 {
-    mpm_real share = 1;
+    mpm_desc open = *d;
     int a;
-    if (mpm__flat(d)) return 1;
-    for (a = 0; a < 2; a++)
-        if (d->side[2 * a] == MPM_SIDE_SYMMETRY || d->side[2 * a + 1] == MPM_SIDE_SYMMETRY) share /= 2;
-    return share;
+    for (a = 0; a < 6; a++) open.side[a] = MPM_SIDE_OPEN;
+    return (mpm_real)mpm_shape_count(d, &b->shape, b->spacing) /
+           (mpm_real)mpm_shape_count(&open, &b->shape, b->spacing);
 }
 
 /* The true areas of the damped faces, bottom and circumference (A 3.45, 3.46). */
 static inline void mpm__areas(const mpm_desc *d, mpm_body *b)
 {
     const mpm_shape *s = &b->desc.shape;
-    mpm_real kept = mpm__kept(d), a = 2 * s->half[0], h = 2 * s->half[2];
+    mpm_real kept = mpm__kept(d, &b->desc), a = 2 * s->half[0], h = 2 * s->half[2];
     if (d->geometry == MPM_PLANE_STRAIN) {
-        if (d->side[0] == MPM_SIDE_SYMMETRY) kept = MPM_R(0.5);
         b->area[0] = a * kept;
         b->area[1] = 2 * h * kept;
     } else if (s->kind == MPM_SHAPE_BOX && d->geometry == MPM_3D) {
         b->area[0] = a * 2 * s->half[1] * kept;
         b->area[1] = 2 * (a + 2 * s->half[1]) * h * kept;
     } else {
+        if (d->geometry == MPM_AXISYMMETRIC) kept = 1; /* rings are whole */
         b->area[0] = MPM__PI * s->half[0] * s->half[0] * kept;
         b->area[1] = 2 * MPM__PI * s->half[0] * h * kept;
     }
@@ -1486,8 +1489,11 @@ MPM__KERNEL void mpm__weights_axis(mpm__weights *s, int axis, int k, const mpm_r
             s->N[axis][0][p] = 1;
             s->dN[axis][0][p] = 0;
         } else if (k == 2) {
-            s->N[axis][0][p] = 1 - t[p];
-            s->N[axis][1][p] = t[p];
+            /* A point on a grid plane would give its far node a gradient but no mass, hence no
+               velocity: keep it a hair's breadth inside. */
+            const mpm_real in = t[p] > MPM__HAIR ? t[p] : MPM__HAIR, u = in < 1 - MPM__HAIR ? in : 1 - MPM__HAIR;
+            s->N[axis][0][p] = 1 - u;
+            s->N[axis][1][p] = u;
             s->dN[axis][0][p] = -inv;
             s->dN[axis][1][p] = inv;
         } else {

@@ -95,7 +95,7 @@ static int write_points(const impact *s, const char *folder, const char *name)
     field[0] = mpm_io_vector("velocity (m/s)", p->v[0], p->v[1], p->v[2], 1);
     field[1] = mpm_io_tensor("stress (MPa)", p->stress[0], p->stress[1], p->stress[2], p->stress[3], p->stress[4],
                              p->stress[5], 1);
-    field[2] = mpm_io_scalar("density (g/cm3)", p->density, 1);
+    field[2] = mpm_io_scalar("density (g/cm3)", p->density, 1e3);
     field[3] = mpm_io_scalar("temperature (K)", p->temperature, 1);
     field[4] = mpm_io_scalar("plastic strain", p->plastic_strain, 1);
     field[5] = mpm_io_scalar("plastic strain rate (1/us)", p->plastic_rate, 1);

@@ -19,18 +19,27 @@ static inline void check_line(int ok, const char *what, double got, double wante
 }
 
 /* |got - wanted| <= tolerance * |wanted| */
-#define CHECK_RELATIVE(what, got, wanted, tolerance)                                              \
-    check_line(fabs((double)(got) - (double)(wanted)) <= (tolerance)*fabs((double)(wanted)), what, \
-               (double)(got), (double)(wanted), (tolerance))
+static inline void check_relative(const char *what, double got, double wanted, double tolerance)
+{
+    check_line(fabs(got - wanted) <= tolerance * fabs(wanted), what, got, wanted, tolerance);
+}
+#define CHECK_RELATIVE(what, got, wanted, tolerance) \
+    check_relative(what, (double)(got), (double)(wanted), (double)(tolerance))
 
 /* |got - wanted| <= tolerance */
-#define CHECK_NEAR(what, got, wanted, tolerance)                                       \
-    check_line(fabs((double)(got) - (double)(wanted)) <= (tolerance), what, (double)(got), \
-               (double)(wanted), (tolerance))
+static inline void check_near(const char *what, double got, double wanted, double tolerance)
+{
+    check_line(fabs(got - wanted) <= tolerance, what, got, wanted, tolerance);
+}
+#define CHECK_NEAR(what, got, wanted, tolerance) \
+    check_near(what, (double)(got), (double)(wanted), (double)(tolerance))
 
 /* two whole numbers (counts, statuses) are the same */
-#define CHECK_EQUAL(what, got, wanted) \
-    check_line((long)(got) == (long)(wanted), what, (double)(got), (double)(wanted), 0.0)
+static inline void check_equal(const char *what, long got, long wanted)
+{
+    check_line(got == wanted, what, (double)got, (double)wanted, 0);
+}
+#define CHECK_EQUAL(what, got, wanted) check_equal(what, (long)(got), (long)(wanted))
 
 /* a condition holds */
 #define CHECK_TRUE(what, condition) CHECK_EQUAL(what, (condition) ? 1 : 0, 1)

@@ -965,7 +965,8 @@ MPM_API size_t mpm_bytes(const mpm_desc *d)
     w.desc = *d;
     mpm__grid_sizes(&w);
     n = mpm__layout_points(&w, NULL);
-    n = mpm__add(mpm__add(n, MPM__ALIGN), mpm__layout_work(&w, NULL, mpm__guess_nodes(d)));
+    if (n > (size_t)-1 - MPM__ALIGN) return 0;
+    n = mpm__add((n + MPM__ALIGN) / MPM__ALIGN * MPM__ALIGN, mpm__layout_work(&w, NULL, mpm__guess_nodes(d)));
     return n == (size_t)-1 ? 0 : n;
 }
 
@@ -1223,6 +1224,7 @@ MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *desc)
     if ((s = mpm__fill(w, &b, &w->fault)) != MPM_OK) return s;
     w->body[w->bodies++] = b;
     w->points.count += b.count;
+    w->sorted_runs = 0;
     /* Room for the nodes, with half as much again to spare; caller's memory cannot grow by itself. */
     for (;;) {
         s = mpm_locate(w);

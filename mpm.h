@@ -1035,18 +1035,27 @@ MPM_API size_t mpm_grow_bytes(const mpm_world *w)
     return mpm__layout_work(&copy, NULL, mpm__grown(w));
 }
 
+/* Forgets all slots: the table of nodes is empty again. */
+static inline void mpm__grid_reset(mpm_world *w)
+{
+    int32_t s;
+    for (s = 0; s < w->nodes; s++) w->head[w->node[s].index] = -1;
+    w->nodes = w->runs = w->pairs = w->pairs_possible = 0;
+}
+
 MPM_API mpm_status mpm_grow(mpm_world *w, void *memory, size_t bytes)
 {
+    const int32_t nodes = mpm__grown(w);
     size_t need = mpm_grow_bytes(w);
     void *block = memory ? memory : MPM_MALLOC(need);
     if (!block || (memory && bytes < need))
         return mpm__fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)need, -1);
+    mpm__grid_reset(w);
     if (w->owns_work) MPM_FREE(w->work);
     w->work = block;
     w->work_bytes = need;
     w->owns_work = memory == NULL;
-    mpm__layout_work(w, (char *)block, mpm__grown(w));
-    w->nodes = w->runs = w->pairs = 0;
+    mpm__layout_work(w, (char *)block, nodes);
     return MPM_OK;
 }
 
@@ -1361,13 +1370,6 @@ static inline int32_t mpm__count_runs(const mpm_world *w)
         for (i = from + 1; i < to; i++) n += w->key[i] != w->key[i - 1];
     }
     return n;
-}
-
-static inline void mpm__grid_reset(mpm_world *w)
-{
-    int32_t s;
-    for (s = 0; s < w->nodes; s++) w->head[w->node[s].index] = -1;
-    w->nodes = w->runs = w->pairs = w->pairs_possible = 0;
 }
 
 /* The slot of a body at a node, made if there is none; -1 if there is no room. */

@@ -1,0 +1,241 @@
+/* 21_world - setting up: what is refused, memory, retirement, repetition, units.
+   SPDX-License-Identifier: MIT */
+#define MPM_IMPLEMENTATION
+#include "scene.h"
+#include "check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double eps = (double)MPM_EPSILON;
+
+static void refuses_desc(const char *field, mpm_desc d, mpm_status wanted)
+{
+    mpm_world w;
+    char line[100];
+    snprintf(line, sizeof line, "refused: %s", field);
+    CHECK_EQUAL(line, mpm_init(&w, &d, NULL, 0), wanted);
+    CHECK_TRUE("... the fault names the field", w.fault.field && !strcmp(w.fault.field, field));
+    CHECK_EQUAL("... and no memory is wanted", mpm_bytes(&d), 0);
+    mpm_free(&w);
+}
+
+static void bad_descriptions(void)
+{
+    const mpm_desc good = scene_grid(1, 10, 10, 10, 0, 0, 0);
+    const mpm_real nan = (mpm_real)(strtod("nan", NULL));
+    mpm_desc d = good;
+    d.cell = -1;
+    refuses_desc("cell", d, MPM_ERR_ARGUMENT);
+    d.cell = nan;
+    refuses_desc("cell", d, MPM_ERR_NAN);
+    d = good;
+    d.cells[1] = 0;
+    refuses_desc("cells", d, MPM_ERR_ARGUMENT);
+    d = good;
+    d.cells[0] = d.cells[1] = d.cells[2] = 100000;
+    refuses_desc("cells in all", d, MPM_ERR_ARGUMENT);
+    d = good;
+    d.friction = -1;
+    refuses_desc("friction", d, MPM_ERR_ARGUMENT);
+    d = good;
+    d.points = 0;
+    refuses_desc("points", d, MPM_ERR_ARGUMENT);
+    d = good;
+    d.gravity[2] = nan;
+    refuses_desc("gravity", d, MPM_ERR_NAN);
+}
+
+static void bad_bodies(void)
+{
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(1, 10, 10, 10, 0, 0, 0);
+    const mpm_body_desc good = scene_body(&m, mpm_sphere(3, 3, 3, 2), 0.5, 0);
+    mpm_body_desc b = good;
+    mpm_world w;
+    mpm_init(&w, &d, NULL, 0);
+    b.spacing = MPM_R(1.5);
+    CHECK_EQUAL("spacing larger than the cell", mpm_body_add(&w, &b), MPM_ERR_ARGUMENT);
+    CHECK_NEAR("... names the value", w.fault.value, 1.5, 0);
+    b = good;
+    b.density = 0;
+    CHECK_EQUAL("no density", mpm_body_add(&w, &b), MPM_ERR_ARGUMENT);
+    b = good;
+    b.shape = mpm_sphere(3, 3, 3, -2);
+    CHECK_EQUAL("negative radius", mpm_body_add(&w, &b), MPM_ERR_ARGUMENT);
+    b.shape = mpm_sphere(9, 3, 3, 2);
+    CHECK_EQUAL("outside the grid", mpm_body_add(&w, &b), MPM_ERR_OUTSIDE);
+    CHECK_EQUAL("the world is unchanged", w.points.count + w.bodies, 0);
+    CHECK_EQUAL("a good one", mpm_body_add(&w, &good), MPM_OK);
+    b.shape = mpm_box(4, 2, 2, 6, 4, 4);
+    CHECK_EQUAL("overlap", mpm_body_add(&w, &b), MPM_ERR_OVERLAP);
+    CHECK_EQUAL("... with the first body", w.fault.index, 0);
+    b.shape = mpm_box(2, 2, 2, 4, 4, 4);
+    CHECK_EQUAL("overlap, inside", mpm_body_add(&w, &b), MPM_ERR_OVERLAP);
+    mpm_free(&w);
+}
+
+/* The same world in caller's memory; too little of it; growing by hand. */
+static void memory(void)
+{
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(1, 10, 10, 10, 0, 0, 0);
+    const mpm_body_desc b = scene_body(&m, mpm_sphere(5, 5, 5, 3), 0.5, -100);
+    mpm_world own, given;
+    size_t bytes;
+    void *block, *more = NULL;
+    int n, full = 0;
+    d.points = mpm_shape_count(&d, &b.shape, b.spacing);
+    d.nodes = 100; /* too few on purpose */
+    bytes = mpm_bytes(&d);
+    block = malloc(bytes);
+    CHECK_EQUAL("memory: one byte short", mpm_init(&given, &d, block, bytes - 1), MPM_ERR_MEMORY);
+    CHECK_EQUAL("memory: given", mpm_init(&given, &d, block, bytes), MPM_OK);
+    CHECK_EQUAL("memory: own", mpm_init(&own, &d, NULL, 0), MPM_OK);
+    CHECK_EQUAL("memory: own grows for the body", mpm_body_add(&own, &b), MPM_OK);
+    CHECK_EQUAL("memory: given cannot", mpm_body_add(&given, &b), MPM_ERR_FULL);
+    while (given.bodies == 0 && full < 8) {
+        void *next = malloc(mpm_grow_bytes(&given));
+        CHECK_EQUAL("memory: grow by hand", mpm_grow(&given, next, mpm_grow_bytes(&given)), MPM_OK);
+        free(more);
+        more = next;
+        full++;
+        mpm_body_add(&given, &b);
+    }
+    for (n = 0; n < 50; n++) {
+        CHECK_TRUE("memory: step", scene_step(&own, NULL, MPM_R(1e-5)) >= 0 && mpm_step(&given, MPM_R(1e-5)) >= 0);
+    }
+    CHECK_EQUAL("memory: same bits", memcmp(own.points.v[2], given.points.v[2], (size_t)d.points * sizeof(mpm_real)), 0);
+    mpm_free(&own);
+    mpm_free(&given);
+    free(block);
+    free(more);
+}
+
+/* A sphere half of which flies out of the grid: counted, kept, its mass and momentum not lost. */
+static void retirement(void)
+{
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(1, 10, 10, 10, 0, 0, 0);
+    const mpm_body_desc b = scene_body(&m, mpm_sphere(5, 5, 3, 2), 0.5, -500);
+    mpm_status s = MPM_OK, seen = MPM_OK;
+    mpm_totals t0, t1;
+    mpm_world w;
+    int32_t i;
+    int n, ids = 1;
+    char *found;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &b);
+    t0 = mpm_body_totals(&w, -1);
+    for (n = 0; n < 300 && s >= 0; n++) {
+        s = scene_step(&w, NULL, MPM_R(2e-5));
+        if (s == MPM_RETIRED) seen = s;
+    }
+    t1 = mpm_body_totals(&w, -1);
+    CHECK_EQUAL("retired: reported by the step", seen, MPM_RETIRED);
+    CHECK_TRUE("retired: some, not all", w.retired > 0 && w.retired < t0.points);
+    CHECK_EQUAL("retired: counted", t1.retired, w.retired);
+    CHECK_NEAR("retired: mass kept", t1.mass, t0.mass, 0);
+    found = (char *)calloc((size_t)w.points.count, 1);
+    for (i = 0; i < w.points.count; i++) found[w.points.id[i]]++;
+    for (i = 0; i < w.points.count; i++) ids = ids && found[i] == 1;
+    CHECK_TRUE("retired: every point is there once", ids);
+    free(found);
+    w.points.x[1][w.body[0].first] = (mpm_real)strtod("nan", NULL);
+    CHECK_EQUAL("a position that is no number", mpm_step(&w, MPM_R(2e-5)), MPM_ERR_NAN);
+    mpm_free(&w);
+}
+
+/* A small bonded impact described in a unit system. Writes SI numbers. */
+static void impact_in(mpm_units u, double out[5], mpm_real *bits)
+{
+    const double um = 1e-6 / u.length, ms = 1 / mpm_units_velocity(&u);
+    mpm_material m = scene_metal(0, u);
+    mpm_bond bond = mpm_bond_default(&u);
+    mpm_desc d = scene_grid(1.5 * um, 10, 10, 14, 0, 0, -9 * um);
+    mpm_body_desc ball = scene_body(&m, mpm_sphere(0, 0, (mpm_real)(3 * um), (mpm_real)(3 * um)), 0.75 * um, -900 * ms);
+    mpm_body_desc slab = scene_body(&m, mpm_cylinder(0, 0, (mpm_real)(-6 * um), (mpm_real)(7.5 * um), (mpm_real)(6 * um)),
+                                    0.75 * um, 0);
+    const double dt = 8e-12 / u.time;
+    mpm_world w;
+    mpm_totals t;
+    int32_t i;
+    int n;
+    d.side[0] = d.side[2] = MPM_SIDE_SYMMETRY;
+    slab.absorb = MPM_BOTTOM | MPM_SIDES;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &ball);
+    mpm_body_add(&w, &slab);
+    for (n = 0; n < 800; n++)
+        if (scene_step(&w, &bond, (mpm_real)dt) < 0) break;
+    t = mpm_body_totals(&w, -1);
+    out[0] = n;
+    out[1] = t.kinetic * mpm_units_energy(&u);
+    out[2] = t.internal * mpm_units_energy(&u);
+    out[3] = t.plastic_strain_mean;
+    out[4] = mpm_bond_measure_body(&w, -1).abp;
+    if (bits)
+        for (i = 0; i < 100; i++) bits[i] = w.points.v[i % 3][i];
+    mpm_free(&w);
+}
+
+static void units(void)
+{
+    const double loose = sizeof(mpm_real) == 4 ? 0.02 : 1e-9; /* float: round-off grown over 800 steps */
+    double a[5], b[5], c[5];
+    mpm_real first[100], again[100];
+    int i;
+    impact_in(mpm_units_um_us_ng(), a, first);
+    impact_in(mpm_units_si(), b, NULL);
+    impact_in(mpm_units_mm_ms_g(), c, NULL);
+    CHECK_EQUAL("units: all steps", a[0], 800);
+    CHECK_TRUE("units: it bonds somewhere", a[4] > 0.01);
+    for (i = 1; i < 5; i++) {
+        CHECK_RELATIVE("units: SI as um us ng", b[i], a[i], loose);
+        CHECK_RELATIVE("units: mm ms g as um us ng", c[i], a[i], loose);
+    }
+    impact_in(mpm_units_um_us_ng(), b, again);
+    CHECK_EQUAL("repeated: same bits", memcmp(first, again, sizeof first), 0);
+}
+
+/* Labels and dampers: the layers are where they should be and stand for the true area. */
+static void labels(void)
+{
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(1.5, 12, 12, 10, 0, 0, -10);
+    mpm_body_desc slab = scene_body(&m, mpm_cylinder(0, 0, -6, 15, 6), 0.5, 0);
+    const double pi = 3.14159265358979;
+    long top = 0, bottom = 0, sides = 0, surface = 0;
+    mpm_world w;
+    int32_t i;
+    d.side[0] = d.side[2] = MPM_SIDE_SYMMETRY;
+    slab.absorb = MPM_BOTTOM | MPM_SIDES;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &slab);
+    for (i = 0; i < w.points.count; i++) {
+        top += (w.points.flags[i] & MPM_TOP) != 0;
+        bottom += (w.points.flags[i] & MPM_BOTTOM) != 0;
+        sides += (w.points.flags[i] & MPM_SIDES) != 0;
+        surface += (w.points.flags[i] & MPM_SURFACE) != 0;
+    }
+    CHECK_EQUAL("labels: one layer at the top", top, w.points.count / 12);
+    CHECK_EQUAL("labels: one layer at the bottom", bottom, w.points.count / 12);
+    CHECK_EQUAL("labels: damped faces are no surface", surface, top);
+    CHECK_RELATIVE("labels: circumference, one spacing thick", (double)sides * 0.25, pi / 2 * 15 * 6, 0.06);
+    CHECK_RELATIVE("dampers: area of the bottom", w.body[0].area[0], pi * 225 / 4, 1e-5);
+    CHECK_RELATIVE("dampers: area of the circumference", w.body[0].area[1], pi / 2 * 15 * 6, 1e-5);
+    CHECK_NEAR("dampers: mass share of the bottom", w.body[0].mass[0], (double)bottom * (double)w.body[0].point_mass,
+               1e4 * eps);
+    mpm_free(&w);
+}
+
+int main(void)
+{
+    bad_descriptions();
+    bad_bodies();
+    memory();
+    retirement();
+    units();
+    labels();
+    return check_end();
+}

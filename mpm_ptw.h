@@ -162,7 +162,7 @@ typedef struct mpm_material_state {
 typedef struct mpm_flow {
     mpm_real stress;        /* flow stress, >= 0 */
     mpm_real strain_slope;  /* d stress / d plastic strain */
-    mpm_real rate_slope;    /* d stress / d plastic rate [stress time] */
+    mpm_real rate_slope;    /* d stress / d ln(plastic rate) */
 } mpm_flow;
 
 struct mpm_material;
@@ -365,15 +365,13 @@ typedef struct mpm__ptw_shared {
     mpm_real eta_low, eta_high;
     mpm_real rate_factor;    /* gamma/2 (4 pi/(3 M))^(1/3) rho0^(-1/6): gamma xidot per sqrt(mu) */
     mpm_real cross;          /* ln r beyond which y1 r^y2 >= s0 r^s1 for certain */
-    mpm_real bound_shear;    /* flow stress >= bound_shear mu + bound_stress ... */
-    mpm_real bound_stress;   /* ... at every strain and rate of an unmolten point */
 } mpm__ptw_shared;
 
 /* What one point needs of its state, before strain and rate are known. */
 typedef struct mpm__ptw_point {
     mpm_material_state state;  /* strain and rate are overwritten as the solution tries them */
     mpm_real shear;            /* mu */
-    mpm_real melt;             /* T_m */
+    mpm_real melt, hat;        /* T_m and T/T_m */
     mpm_real eta, log_eta;     /* rho/rho0 and its logarithm */
     mpm_real rate_scale;       /* r = rate rate_scale eta^(1/6), from A 2.8 */
 } mpm__ptw_point;
@@ -418,21 +416,6 @@ static inline mpm_real mpm__ptw_shear_floor(const mpm_material *m)
     return m->shear_floor * m->shear_modulus;
 }
 
-/* The lower bound of the flow stress that spares most elastic points the full law. PTW hardens
-   from tau_y and rises with rate, so 2 mu yinf bounds it (yinf <= sinf holds for checked
-   materials); the factor below 1 covers rounding. Other laws: their stress at zero strain. */
-static inline void mpm__ptw_bound(const mpm_material *m, mpm__ptw_shared *h)
-{
-    mpm_real safe = 1 - 16 * MPM_EPSILON;
-    h->bound_shear = h->bound_stress = 0;
-    if (m->strength == MPM_STRENGTH_PTW)
-        h->bound_shear = 2 * mpm__ptw_min(m->ptw.yinf, m->ptw.sinf) * safe;
-    else if (m->strength == MPM_STRENGTH_SCG)
-        h->bound_shear = mpm__ptw_min(m->scg.y0, m->scg.ymax) / m->shear_modulus * safe;
-    else if (m->strength == MPM_STRENGTH_LINEAR && m->linear_hardening >= 0)
-        h->bound_stress = m->linear_yield * safe;
-}
-
 /* A 2.9 rises with eta up to eta_high (everywhere, unless Gamma0 - a - 1/3 < 0), so a point
    denser than eta_low and colder than T_m(eta_low) is solid, without a further look. */
 static inline void mpm__ptw_cold(const mpm_material *m, mpm__ptw_shared *h)
@@ -456,7 +439,6 @@ static inline mpm__ptw_shared mpm__ptw_share(const mpm_material *m)
     const mpm_real pi = MPM_R(3.14159265358979323846);
     mpm__ptw_shared h;
     mpm__ptw_cold(m, &h);
-    mpm__ptw_bound(m, &h);
     h.rate_factor = 0;
     h.cross = mpm__ptw_infinity();
     if (m->strength == MPM_STRENGTH_PTW) {
@@ -481,6 +463,7 @@ static inline mpm__ptw_point mpm__ptw_prepare(const mpm_material *m, const mpm__
     p.rate_scale = 0;
     if (m->melt == MPM_MELT_SCG || m->strength == MPM_STRENGTH_PTW) p.log_eta = mpm__ptw_log(eta);
     p.melt = mpm__ptw_melt(m, h->melt_exponent, p.log_eta, eta);
+    p.hat = s->temperature / p.melt;
     if (m->strength == MPM_STRENGTH_PTW)
         p.rate_scale = 1 / (h->rate_factor * mpm__ptw_sqrt(shear));
     return p;
@@ -588,7 +571,7 @@ static inline mpm_flow mpm__ptw_harden_negative(const mpm_ptw *c, const mpm__ptw
 
 /* A 2.4 over 2 mu for tau_s > tau_y, written as tau_y + alpha ln W with
    W = 1 + psi (1 - exp(-z)), z = theta eps/(alpha psi): the same number, exactly tau_y at zero
-   strain. rate_slope is d/dL here. */
+   strain. */
 static inline mpm_flow mpm__ptw_harden_positive(const mpm_ptw *c, const mpm__ptw_levels *v,
                                                 mpm_real strain, mpm_real alpha)
 {
@@ -620,7 +603,7 @@ static inline mpm_flow mpm__ptw_harden_steep(const mpm_ptw *c, const mpm__ptw_le
     return f;
 }
 
-/* A 2.4 over 2 mu with all its limits. rate_slope is d/dL here. */
+/* A 2.4 over 2 mu with all its limits. */
 static inline mpm_flow mpm__ptw_harden(const mpm_ptw *c, const mpm__ptw_levels *v, mpm_real strain)
 {
     mpm_flow f;
@@ -644,14 +627,13 @@ static inline mpm_flow mpm__ptw_flow_ptw(const mpm_material *m, const mpm__ptw_s
     mpm__ptw_levels v;
     mpm_flow f;
     if (rate > 0)
-        v = mpm__ptw_saturation(m, h, p->state.temperature / p->melt,
-                                mpm__ptw_log(rate * p->rate_scale) + p->log_eta / 6);
+        v = mpm__ptw_saturation(m, h, p->hat, mpm__ptw_log(rate * p->rate_scale) + p->log_eta / 6);
     else
         v = mpm__ptw_static_levels(&m->ptw, p->state.temperature);
     f = mpm__ptw_harden(&m->ptw, &v, strain);
     f.stress *= 2 * p->shear;
     f.strain_slope *= 2 * p->shear;
-    f.rate_slope *= rate > 0 ? 2 * p->shear / rate : 0;
+    f.rate_slope *= 2 * p->shear;
     return f;
 }
 
@@ -692,7 +674,7 @@ static inline mpm_flow mpm__ptw_flow_jc(const mpm_material *m, const mpm__ptw_po
         mpm_real grown = from > strain ? c->b * mpm__ptw_pow(from, c->n) : hard - c->a;
         f.strain_slope = c->n * grown / from * fast * soft;
     }
-    f.rate_slope = rate > c->rate ? hard * soft * c->c / rate : 0;
+    f.rate_slope = rate > c->rate ? hard * soft * c->c : 0;
     return f;
 }
 
@@ -848,17 +830,6 @@ typedef struct mpm__ptw_lanes {
     int yielding[MPM__PTW_LANES], yield_count;  /* points that were returned */
 } mpm__ptw_lanes;
 
-/* 0 if every number of the point is finite, else not (NaN included): x * 0 is 0 for these only. */
-static inline mpm_real mpm__ptw_probe(const mpm_block *b, int i)
-{
-    mpm_real sum = b->density[i] + b->energy[i] + b->temperature[i] + b->plastic_strain[i] +
-                   b->plastic_rate[i] + b->plastic_work[i];
-    int j;
-    for (j = 0; j < 6; j++) sum += b->strain[j][i] + b->stress[j][i];
-    for (j = 0; j < 3; j++) sum += b->spin[j][i];
-    return sum * 0;
-}
-
 /* Names what is wrong with point i, slowly; MPM_OK if nothing is. */
 static inline mpm_status mpm__ptw_diagnose(const mpm_material *m, const mpm_block *b, int i)
 {
@@ -896,26 +867,30 @@ static inline mpm_status mpm__ptw_diagnose(const mpm_material *m, const mpm_bloc
     return MPM_OK;
 }
 
-/* The same conditions, quickly, for a whole group: only a suspect group is diagnosed. */
-static inline mpm_status mpm__ptw_screen(const mpm_material *m, const mpm_block *b, int first, int n)
+/* The same conditions, quickly, for a whole group: only a suspect one is diagnosed. x * 0 is 0 for
+   finite numbers only, and the trial's von Mises stress holds every component of stress, strain
+   and rotation. */
+static inline mpm_status mpm__ptw_screen(const mpm_material *m, const mpm_block *b,
+                                         const mpm__ptw_lanes *a)
 {
-    mpm_real limit = mpm__ptw_infinity(), half = 0, sum = 0;
-    int i, bad = 0;
+    mpm_real limit = mpm__ptw_infinity(), half = 0, rho0 = m->density, sum = 0;
+    int i, n = a->count, bad = 0;
     if (m->eos == MPM_EOS_MIE_GRUENEISEN) {
         half = m->gruneisen / 2;
-        if (m->hugoniot_slope > 1) limit = m->density * (1 + 1 / (m->hugoniot_slope - 1));
+        if (m->hugoniot_slope > 1) limit = rho0 * (1 + 1 / (m->hugoniot_slope - 1));
     }
     limit *= 1 - 8 * MPM_EPSILON;
-    for (i = first; i < first + n; i++) {
-        mpm_real volume = b->strain[0][i] + b->strain[1][i] + b->strain[2][i];
-        mpm_real rho = b->density[i];
-        sum += mpm__ptw_probe(b, i);
-        bad |= !(rho > 0) | !(rho < limit) | !(b->temperature[i] >= 0) |
-               !(b->plastic_strain[i] >= 0) | !(volume > -1) |
-               !(rho * (1 + volume) + half * m->density * volume > 0);
+    for (i = 0; i < n; i++) {
+        int k = a->first + i;
+        mpm_real volume = a->volume[i], rho = b->density[k], T = b->temperature[k];
+        mpm_real strain = b->plastic_strain[k], old = rho * (1 + volume);
+        sum += (a->mises2[i] + a->mean[i] + b->energy[k] + b->plastic_rate[k] + b->plastic_work[k] + T +
+                strain + volume) * 0;
+        bad |= !(rho > 0 && rho < limit && T >= 0 && strain >= 0 && volume > -1 &&
+                 old + half * rho0 * volume > 0);
     }
     if (!bad && sum == 0) return MPM_OK;
-    for (i = first; i < first + n; i++) {
+    for (i = a->first; i < a->first + n; i++) {
         mpm_status status = mpm__ptw_diagnose(m, b, i);
         if (status < 0) return status;
     }
@@ -1019,17 +994,75 @@ static inline void mpm__ptw_try(mpm__ptw_lanes *a)
     }
 }
 
-/* The flow law at plastic strain eps + d and rate d/dt, its slope taken with respect to d. */
-static inline mpm_real mpm__ptw_flow_at(const mpm_material *m, const mpm__ptw_shared *h,
-                                        mpm__ptw_point *p, mpm_real strain, mpm_real d, mpm_real dt,
-                                        mpm_real *slope)
+/* The plastic strains between which the flow stress is bounded by straight lines. */
+enum { MPM__PTW_KNOTS = 6 };
+static const mpm_real mpm__ptw_knots[MPM__PTW_KNOTS] = {MPM_R(0.0),  MPM_R(0.02), MPM_R(0.06),
+                                                        MPM_R(0.15), MPM_R(0.4),  MPM_R(1.5)};
+
+/* The static flow stress of a solid point above 0 K is at least mu times the line between the
+   values of `shear` at the knots, plus `stress`. */
+typedef struct mpm__ptw_bounds {
+    mpm_real shear[MPM__PTW_KNOTS], stress;
+} mpm__ptw_bounds;
+
+/* The lower bound of the static flow stress that spares most elastic points the full law. The
+   static stress of PTW and (with n <= 1) SCG is mu times a rising concave function of strain
+   alone, so the chords between knots lie below it, and the last value bounds it beyond. The staged
+   return yields at the last step's rate: only tau_y >= yinf is used there. The factor below 1
+   covers rounding. */
+static inline mpm__ptw_bounds mpm__ptw_bound(const mpm_material *m)
 {
-    mpm_flow f;
-    p->state.plastic_strain = strain + d;
-    p->state.plastic_rate = d / dt;
-    f = mpm__ptw_flow(m, h, p);
-    *slope = f.strain_slope + f.rate_slope / dt;
-    return f.stress;
+    const mpm_real safe = 1 - 64 * MPM_EPSILON;
+    int concave = m->mapping == MPM_RETURN_CONSISTENT && !(m->strength == MPM_STRENGTH_SCG && m->scg.n > 1);
+    mpm__ptw_levels v;
+    mpm__ptw_point p;
+    mpm__ptw_bounds bounds;
+    int i;
+    memset(&p, 0, sizeof p);
+    p.shear = m->shear_modulus;
+    v = mpm__ptw_static_levels(&m->ptw, 1);
+    for (i = 0; i < MPM__PTW_KNOTS; i++) {
+        p.state.plastic_strain = concave ? mpm__ptw_knots[i] : 0;
+        bounds.shear[i] = 0;
+        if (m->strength == MPM_STRENGTH_PTW)
+            bounds.shear[i] = safe * 2 * mpm__ptw_harden(&m->ptw, &v, p.state.plastic_strain).stress;
+        else if (m->strength == MPM_STRENGTH_SCG)
+            bounds.shear[i] = safe * mpm__ptw_flow_scg(m, &p).stress / m->shear_modulus;
+    }
+    bounds.stress = 0;
+    if (m->strength == MPM_STRENGTH_LINEAR && m->linear_hardening >= 0)
+        bounds.stress = safe * m->linear_yield;
+    return bounds;
+}
+
+/* The line between the knots at a strain >= 0. */
+static inline mpm_real mpm__ptw_chord(const mpm__ptw_bounds *bounds, mpm_real strain)
+{
+    const mpm_real *x = mpm__ptw_knots, *y = bounds->shear;
+    int i = 1;
+    if (strain >= x[MPM__PTW_KNOTS - 1]) return y[MPM__PTW_KNOTS - 1];
+    while (strain >= x[i]) i++;
+    return y[i - 1] + (y[i] - y[i - 1]) * ((strain - x[i - 1]) / (x[i] - x[i - 1]));
+}
+
+/* One search for a return: what is sought and what is known of it. */
+typedef struct mpm__ptw_search {
+    mpm__ptw_point point;
+    mpm_real mises;      /* trial von Mises stress */
+    mpm_real strain;     /* plastic strain at level k */
+    mpm_real d;          /* the increment: next to be tried, then the answer */
+    mpm_real low, high;  /* bracket of d */
+    int yields;          /* whether the static flow stress is known to be exceeded */
+    int lane;            /* whose search it is */
+} mpm__ptw_search;
+
+/* The flow law at plastic strain eps + d and rate d/dt. */
+static inline mpm_flow mpm__ptw_flow_at(const mpm_material *m, const mpm__ptw_shared *h,
+                                        mpm__ptw_search *q, mpm_real d, mpm_real per_step)
+{
+    q->point.state.plastic_strain = q->strain + d;
+    q->point.state.plastic_rate = d * per_step;
+    return mpm__ptw_flow(m, h, &q->point);
 }
 
 enum { MPM__PTW_ITERATIONS = 100 };
@@ -1042,126 +1075,185 @@ enum { MPM__PTW_ITERATIONS = 100 };
 /* The consistent return: the increment d that solves
        mises - 3 mu d = sigma_y(eps + d, d/dt, T),
    or 0 if the static flow stress is not reached. The left side falls and the right side rises, so
-   the root is bracketed by 0 and mises/(3 mu); Newton's steps are kept inside the bracket, which
-   shrinks around the root. The search starts from the rate of the last step: if the residual is
-   positive there, the point yields, and the static stress need not be looked at. A last Newton
-   step after the tolerance is met costs nothing and squares the error. Returns d (NaN if the law
-   gave NaN), and in *capped whether the cap ended the search. */
-static inline mpm_real mpm__ptw_return(const mpm_material *m, const mpm__ptw_shared *h,
-                                       mpm__ptw_point *p, mpm_real mises, mpm_real dt, int *capped)
+   the root is bracketed by 0 and mises/(3 mu); steps are kept inside the bracket, which shrinks
+   around the root. The search starts from the rate of the last step: if the residual is positive
+   there, the point yields, and the static stress need not be looked at.
+   Flow stress grows with the logarithm of the rate, so Newton's step is corrected with the second
+   derivative of S ln d (Halley). Of a relative step x it leaves less than (S + 2 H d) x^2/4, H the
+   hardening slope: once that is within tolerance, the law is not evaluated again. (Where a branch
+   of A 2.7 ends within that last step, the flow law is met to about 1e-6 instead.) */
+static inline void mpm__ptw_search_begin(mpm__ptw_search *q, mpm_real mises, mpm_real dt, int lane)
 {
-    mpm_real strain = p->state.plastic_strain, d = p->state.plastic_rate * dt;
-    mpm_real stiff = 3 * p->shear, top = mises / stiff, low = 0, high = top, slope, residual;
-    mpm_real close = MPM__PTW_TOLERANCE * mises;
-    int tries, yields = 0; /* whether the static residual is known to be positive */
-    *capped = 0;
-    if (p->state.temperature >= p->melt) return top;
-    for (tries = 0; tries < MPM__PTW_ITERATIONS; tries++) {
-        if (!yields && !(d > 0)) {
-            residual = mises - mpm__ptw_flow_at(m, h, p, strain, 0, dt, &slope);
-            if (residual <= 0) return 0;
-            yields = 1;
-            d = residual / (stiff + slope);
-        }
-        if (!(d > low && d < high)) d = low + (high - low) / 2;
-        residual = mises - stiff * d - mpm__ptw_flow_at(m, h, p, strain, d, dt, &slope);
-        if (residual != residual) return residual;
-        if (residual > 0) {
-            yields = 1;
-            low = d;
-        } else {
-            high = d;
-        }
-        d += residual / (stiff + slope);
-        /* A small residual is a root only if d itself is not lost in the tolerance. */
-        if (mpm__ptw_abs(residual) <= close && (yields || stiff * d > close)) break;
-        if (yields && high - low <= MPM_EPSILON * top) break;
+    q->mises = mises;
+    q->strain = q->point.state.plastic_strain;
+    q->d = q->point.state.plastic_rate * dt;
+    q->low = 0;
+    q->high = mises / (3 * q->point.shear);
+    q->yields = 0;
+    q->lane = lane;
+}
+
+/* One evaluation of the search (two if the static stress is needed). Returns whether it is over;
+   then q->d is the answer, or NaN if the law gave NaN. */
+static inline int mpm__ptw_search_on(const mpm_material *m, const mpm__ptw_shared *h,
+                                     mpm__ptw_search *q, mpm_real per_step)
+{
+    mpm_real stiff = 3 * q->point.shear, close = MPM__PTW_TOLERANCE * q->mises, d = q->d;
+    mpm_real residual, inverse, x, left;
+    mpm_flow f;
+    int over;
+    if (q->point.state.temperature >= q->point.melt) {
+        q->d = q->high; /* no strength: all of the deviator goes */
+        return 1;
     }
-    *capped = tries == MPM__PTW_ITERATIONS;
-    return mpm__ptw_min(mpm__ptw_max(d, low), high);
+    if (!q->yields && !(d > 0)) {
+        f = mpm__ptw_flow_at(m, h, q, 0, per_step);
+        if (q->mises <= f.stress) {
+            q->d = 0;
+            return 1;
+        }
+        q->yields = 1;
+        d = (q->mises - f.stress) / (stiff + f.strain_slope);
+    }
+    if (!(d > q->low && d < q->high)) d = q->low + (q->high - q->low) / 2;
+    f = mpm__ptw_flow_at(m, h, q, d, per_step);
+    residual = q->mises - stiff * d - f.stress;
+    if (residual > 0) {
+        q->yields = 1;
+        q->low = d;
+    } else {
+        q->high = d;
+    }
+    inverse = 1 / ((stiff + f.strain_slope) * d + f.rate_slope);
+    x = residual * inverse;
+    x /= mpm__ptw_max(1 - x * f.rate_slope * inverse / 2, MPM_R(0.25));
+    q->d = d + x * d;
+    /* A small residual is a root only if d itself is not lost in the tolerance. */
+    left = (f.rate_slope + 2 * f.strain_slope * d) * x * x / 4;
+    over = mpm__ptw_abs(residual) <= close || (mpm__ptw_abs(x) <= MPM_R(1e-4) && left <= close);
+    over = over && (q->yields || stiff * d > close);
+    over = over || (q->yields && q->high - q->low <= MPM_EPSILON * q->mises / stiff);
+    if (over) q->d = mpm__ptw_min(mpm__ptw_max(q->d, q->low), q->high);
+    return over || residual != residual;
 }
 
 /* The staged return A6 - A8: yield at the rate of the last step, one explicit estimate of d, then
-   the flow stress at the strain and rate it gives. Returns d; *flow is the stress returned to. */
+   the flow stress at the strain and rate it gives, which the trial stress may not exceed upwards.
+   Sets q->d and returns the stress returned to. */
 static inline mpm_real mpm__ptw_stage(const mpm_material *m, const mpm__ptw_shared *h,
-                                      mpm__ptw_point *p, mpm_real mises, mpm_real dt, mpm_real *flow)
+                                      mpm__ptw_search *q, mpm_real per_step)
 {
-    mpm_real strain = p->state.plastic_strain, d, slope;
-    mpm_flow f = mpm__ptw_flow(m, h, p);
-    *flow = mises;
-    if (mises <= f.stress) return 0;
-    d = (mises - f.stress) / (3 * p->shear + f.strain_slope);
-    *flow = mpm__ptw_flow_at(m, h, p, strain, d, dt, &slope);
-    if (*flow > mises) *flow = mises;
-    return d;
+    mpm_flow f = mpm__ptw_flow(m, h, &q->point);
+    q->d = 0;
+    if (q->mises <= f.stress) return q->mises;
+    q->d = (q->mises - f.stress) / (3 * q->point.shear + f.strain_slope);
+    return mpm__ptw_min(mpm__ptw_flow_at(m, h, q, q->d, per_step).stress, q->mises);
 }
 
-/* Returns lane i to its flow stress: increment, flow and the scaled deviator go to *a. */
-static inline mpm_status mpm__ptw_return_lane(mpm_material *m, const mpm__ptw_shared *h,
-                                              const mpm_block *b, mpm__ptw_lanes *a, int i)
+/* Lists the lanes that may yield, skipping solid ones below any flow stress. */
+static inline int mpm__ptw_suspects(const mpm_material *m, const mpm__ptw_shared *h,
+                                    const mpm__ptw_bounds *bounds, const mpm_block *b,
+                                    const mpm__ptw_lanes *a, int *list)
 {
-    int j, k = a->first + i, capped = 0;
-    mpm_real mises = mpm__ptw_sqrt(a->mises2[i]), factor, d, flow;
-    mpm_material_state s;
-    mpm__ptw_point p;
-    s.plastic_strain = b->plastic_strain[k];
-    s.plastic_rate = b->plastic_rate[k];
-    s.temperature = b->temperature[k];
-    s.density = b->density[k];
-    s.pressure = -a->mean[i];
-    p = mpm__ptw_prepare(m, h, &s, a->shear[i]);
-    if (m->mapping == MPM_RETURN_STAGED) {
-        d = mpm__ptw_stage(m, h, &p, mises, b->dt, &flow);
-    } else {
-        d = mpm__ptw_return(m, h, &p, mises, b->dt, &capped);
-        flow = s.temperature >= p.melt ? 0 : mpm__ptw_max(mises - 3 * p.shear * d, 0);
+    mpm_real rho_low = h->eta_low * m->density, rho_high = h->eta_high * m->density;
+    int i, n = 0;
+    for (i = 0; i < a->count; i++) {
+        int k = a->first + i;
+        mpm_real bound = mpm__ptw_chord(bounds, b->plastic_strain[k]) * a->shear[i] + bounds->stress;
+        mpm_real T = b->temperature[k], rho = b->density[k];
+        int spared = a->mises2[i] <= bound * bound && T > 0 && T < h->cold && rho >= rho_low &&
+                     rho <= rho_high;
+        list[n] = i;
+        n += !spared;
     }
-    if (!mpm__ptw_finite(d)) return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "flow stress of point", d, k);
-    if (!(d > 0)) return MPM_OK;
-    factor = flow / mises;
+    return n;
+}
+
+/* Takes the answer of a search: increment, flow stress and the scaled deviator go to *a. */
+static inline void mpm__ptw_take(mpm_material *m, mpm__ptw_lanes *a, const mpm__ptw_search *q,
+                                 mpm_real flow, mpm_real per_step)
+{
+    int j, i = q->lane;
+    mpm_real factor;
+    if (!(q->d > 0)) return;
+    factor = flow / q->mises;
     for (j = 0; j < 6; j++) a->trial[j][i] *= factor;
-    a->increment[i] = d;
+    a->increment[i] = q->d;
     a->flow[i] = flow;
     a->yielding[a->yield_count++] = i;
-    if (m->strength == MPM_STRENGTH_PTW && !m->erf_literal && mpm__ptw_overdriven(&p, d / b->dt))
+    if (m->strength == MPM_STRENGTH_PTW && !m->erf_literal &&
+        mpm__ptw_overdriven(&q->point, q->d * per_step))
         m->erf_clip_hits++;
-    if (!capped) return MPM_OK;
-    m->iteration_hits++;
-    return MPM_NOT_CONVERGED;
+}
+
+/* Runs the searches of one group side by side, so that the processor can overlap them: each round
+   tries every open one once. Returns how many were still open at the cap. */
+static inline int mpm__ptw_search_all(const mpm_material *m, const mpm__ptw_shared *h,
+                                      mpm__ptw_search *q, int n, mpm_real per_step)
+{
+    int open[MPM__PTW_LANES], i, left, tries;
+    for (i = 0; i < n; i++) open[i] = i;
+    for (tries = 0; tries < MPM__PTW_ITERATIONS && n > 0; tries++) {
+        for (i = left = 0; i < n; i++) {
+            open[left] = open[i];
+            left += !mpm__ptw_search_on(m, h, &q[open[i]], per_step);
+        }
+        n = left;
+    }
+    return n;
 }
 
 /* Sorts out the points that may yield and returns them to the flow stress. Touches only *a (and
    counters), so that a failure leaves the block as it was. */
-static inline mpm_status mpm__ptw_yield(mpm_material *m, const mpm__ptw_shared *h, const mpm_block *b,
+static inline mpm_status mpm__ptw_yield(mpm_material *m, const mpm__ptw_shared *h,
+                                        const mpm__ptw_bounds *bounds, const mpm_block *b,
                                         mpm__ptw_lanes *a)
 {
-    mpm_status status = MPM_OK;
-    int i;
+    mpm__ptw_search search[MPM__PTW_LANES];
+    mpm_real flow[MPM__PTW_LANES], per_step = 1 / b->dt;
+    int list[MPM__PTW_LANES + 1], i, n, capped = 0;
     a->yield_count = 0;
     if (m->strength == MPM_STRENGTH_ELASTIC) return MPM_OK;
-    for (i = 0; i < a->count; i++) {
-        int k = a->first + i;
-        mpm_real bound = h->bound_shear * a->shear[i] + h->bound_stress;
-        mpm_real eta = b->density[k] / m->density;
-        int solid = b->temperature[k] < h->cold && eta >= h->eta_low && eta <= h->eta_high;
-        mpm_status s;
-        if (solid && a->mises2[i] <= bound * bound) continue;
-        s = mpm__ptw_return_lane(m, h, b, a, i);
-        if (s < 0) return s;
-        if (s > 0) status = s;
+    n = mpm__ptw_suspects(m, h, bounds, b, a, list);
+    for (i = 0; i < n; i++) {
+        int k = a->first + list[i];
+        mpm_material_state s;
+        s.plastic_strain = b->plastic_strain[k];
+        s.plastic_rate = b->plastic_rate[k];
+        s.temperature = b->temperature[k];
+        s.density = b->density[k];
+        s.pressure = -a->mean[list[i]];
+        search[i].point = mpm__ptw_prepare(m, h, &s, a->shear[list[i]]);
+        mpm__ptw_search_begin(&search[i], mpm__ptw_sqrt(a->mises2[list[i]]), b->dt, list[i]);
     }
-    return status;
+    if (m->mapping == MPM_RETURN_STAGED)
+        for (i = 0; i < n; i++) flow[i] = mpm__ptw_stage(m, h, &search[i], per_step);
+    else
+        capped = mpm__ptw_search_all(m, h, search, n, per_step);
+    for (i = 0; i < n; i++) {
+        mpm__ptw_search *q = &search[i];
+        if (m->mapping == MPM_RETURN_CONSISTENT)
+            flow[i] = q->point.state.temperature < q->point.melt
+                          ? mpm__ptw_max(q->mises - 3 * q->point.shear * q->d, 0) : 0;
+        if (!mpm__ptw_finite(q->d) || !mpm__ptw_finite(flow[i]))
+            return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "flow stress of point", q->d,
+                                 a->first + q->lane);
+        mpm__ptw_take(m, a, q, flow[i], per_step);
+    }
+    m->iteration_hits += (unsigned long)capped;
+    return capped ? MPM_NOT_CONVERGED : MPM_OK;
 }
 
 /* Plastic strain, its rate, plastic work (A 4.15) and the heat of it (A 3.44), to the block. */
 static inline void mpm__ptw_commit(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a)
 {
+    mpm_real per_step = 1 / b->dt;
     int i, y;
     for (i = 0; i < a->count; i++) b->plastic_rate[a->first + i] = 0;
     for (y = 0; y < a->yield_count; y++) {
         int k = a->first + a->yielding[y];
         mpm_real d = a->increment[a->yielding[y]], work = a->flow[a->yielding[y]] * d;
-        b->plastic_rate[k] = d / b->dt;
+        b->plastic_rate[k] = d * per_step;
         b->plastic_strain[k] += d;
         b->plastic_work[k] += work;
         if (m->heat_fraction > 0)
@@ -1177,8 +1269,8 @@ static inline void mpm__ptw_close(const mpm_material *m, const mpm_block *b, con
     mpm_real bulk = mpm__ptw_bulk_modulus(m), B = linear ? 0 : m->gruneisen;
     mpm_real stiff = linear ? bulk : m->density * m->sound_speed * m->sound_speed;
     mpm_real slope = m->hugoniot_slope - 1;
-    mpm_real rho0 = m->density, sound = mpm__ptw_sqrt(stiff / rho0), dt = b->dt, cell = b->cell;
-    mpm_real first = m->viscosity_linear * sound, second = m->viscosity_quadratic;
+    mpm_real rho0 = m->density, inverse_rho0 = 1 / rho0, cell_per_step = b->cell / b->dt;
+    mpm_real first = m->viscosity_linear * mpm__ptw_sqrt(stiff / rho0), second = m->viscosity_quadratic;
     mpm_real work[MPM__PTW_LANES], mean[MPM__PTW_LANES], *energy = b->energy + k;
     const mpm_real *density = b->density + k;
     for (i = 0; i < a->count; i++)
@@ -1189,16 +1281,16 @@ static inline void mpm__ptw_close(const mpm_material *m, const mpm_block *b, con
                        (a->rotated[4][i] + a->trial[4][i]) * a->strain[4][i] +
                        (a->rotated[5][i] + a->trial[5][i]) * a->strain[5][i]);
     for (i = 0; i < a->count; i++) {
-        mpm_real rho = density[i], mu = rho / rho0 - 1, v = rho0 / rho;
+        mpm_real rho = density[i], mu = (rho - rho0) * inverse_rho0, v = rho0 / rho;
         mpm_real dv = v * a->volume[i] / (1 + a->volume[i]);
         mpm_real range = 1 - slope * mu;
-        mpm_real shock = stiff * mu * (1 + mu) / (range * range) * (1 - B * mu / (2 * (1 + mu)));
+        mpm_real shock = stiff * mu * (1 + mu - B / 2 * mu) / (range * range);
         mpm_real A = mu < 0 || linear ? stiff * mu : shock;
-        mpm_real squeeze = cell * mpm__ptw_max(-a->volume[i], 0) / dt;
+        mpm_real squeeze = cell_per_step * mpm__ptw_max(-a->volume[i], 0);
         mpm_real q = rho * squeeze * (second * squeeze + first);
         mpm_real E = rho0 * energy[i] + (v - dv / 2) * work[i] / 2 + dv / 2 * (a->mean[i] - q);
         mpm_real p = (A + B * E) / (1 + B * dv / 2);
-        energy[i] = (E - dv / 2 * p) / rho0;
+        energy[i] = (E - dv / 2 * p) * inverse_rho0;
         mean[i] = -(p + q);
     }
     for (j = 0; j < 3; j++)
@@ -1214,20 +1306,22 @@ MPM_API mpm_status mpm_material_stress(void *material, const mpm_block *block)
     mpm_status status = MPM_OK, s;
     unsigned long floor_hits = m->shear_floor_hits;
     mpm__ptw_shared h;
+    mpm__ptw_bounds bounds;
     mpm__ptw_lanes a;
     if (b->count < 0)
         return mpm__ptw_fail(b->fault, MPM_ERR_ARGUMENT, "count", (mpm_real)b->count, -1);
     if (!(b->dt > 0)) return mpm__ptw_fail(b->fault, MPM_ERR_ARGUMENT, "dt", b->dt, -1);
     h = mpm__ptw_share(m);
+    bounds = mpm__ptw_bound(m);
     for (a.first = 0; a.first < b->count; a.first += MPM__PTW_LANES) {
         a.count = b->count - a.first < MPM__PTW_LANES ? b->count - a.first : MPM__PTW_LANES;
-        if ((s = mpm__ptw_screen(m, b, a.first, a.count)) < 0) return s;
         mpm__ptw_split(b, &a);
         mpm__ptw_shear_lanes(m, b, &a);
         if (m->rotation == MPM_ROTATION_PROPER) mpm__ptw_rotate_proper(b, &a);
         else mpm__ptw_rotate_jaumann(b, &a);
         mpm__ptw_try(&a);
-        if ((s = mpm__ptw_yield(m, &h, b, &a)) < 0) return s;
+        if ((s = mpm__ptw_screen(m, b, &a)) < 0) return s;
+        if ((s = mpm__ptw_yield(m, &h, &bounds, b, &a)) < 0) return s;
         if (s > 0) status = s;
         mpm__ptw_commit(m, b, &a);
         mpm__ptw_close(m, b, &a);

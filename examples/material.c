@@ -1,0 +1,97 @@
+/* material.c - the numbers behind a material: flow stress, moduli, melting, pressure.
+   SPDX-License-Identifier: MIT
+
+   Shows how to call the laws of mpm_ptw.h without a grid. Inputs and outputs are SI except where
+   the key says MPa. Expected: `material` alone prints flow_stress_MPa = 259.09 and
+   xidot_per_s = 9.714e12, the values of the aluminium of source A at strain 0.1, 1e6 /s, 300 K. */
+#define MPM_IMPLEMENTATION
+#include "mpm_ptw.h"
+#include "options.h"
+
+static int complain(const char *what, const char *name)
+{
+    fprintf(stderr, "error: %s '%s'; --list shows what there is\n", what, name);
+    return 1;
+}
+
+/* Every material, with the models it has a published set for. */
+static int list(void)
+{
+    static const char *const models[] = {"elastic", "linear", "jc", "scg", "ptw"};
+    const mpm_units si = mpm_units_si();
+    int i, j;
+    for (i = 0; i < mpm_material_preset_count(); i++) {
+        mpm_material m;
+        if (mpm_material_preset(&m, mpm_material_preset_name(i), &si, NULL) < 0) return 1;
+        printf("%-10s", m.name);
+        for (j = 0; j < 5; j++)
+            if (mpm_material_model(&m, models[j], NULL) == MPM_OK) printf(" %s", models[j]);
+        printf("\n");
+    }
+    return 0;
+}
+
+/* Refuses a number the laws are not made for. */
+static int check_input(const char *name, double value, double least, int inclusive)
+{
+    if (value - value == 0 && (inclusive ? value >= least : value > least)) return 0;
+    fprintf(stderr, "error: --%s must be a finite number %s %g, not %g\n", name,
+            inclusive ? "of at least" : "above", least, value);
+    return 1;
+}
+
+static void print(const char *key, double value) { printf("%s = %.17g\n", key, value); }
+
+int main(int argc, char **argv)
+{
+    const char *name = "al", *model = "";
+    double strain = 0.1, rate = 1e6, temperature = 300, density = 2700, energy = 0;
+    int show_list = 0, status;
+    const option options[] = {
+        {"material", OPTION_TEXT, &name, "preset"},
+        {"model", OPTION_TEXT, &model, "elastic, linear, jc, scg or ptw; empty: the preset's own"},
+        {"strain", OPTION_REAL, &strain, "effective plastic strain"},
+        {"rate", OPTION_REAL, &rate, "effective plastic strain rate, 1/s"},
+        {"temperature", OPTION_REAL, &temperature, "K"},
+        {"density", OPTION_REAL, &density, "kg/m^3"},
+        {"energy", OPTION_REAL, &energy, "internal energy, J/kg"},
+        {"list", OPTION_FLAG, &show_list, "materials and their models"},
+    };
+    const mpm_units si = mpm_units_si();
+    mpm_material m;
+    mpm_material_state s;
+    mpm_fault fault;
+    mpm_real pressure, hugoniot;
+
+    status = options_parse(argc, argv, "Prints the properties of a material at one state.", options,
+                           (int)(sizeof options / sizeof options[0]));
+    if (status) return status < 0;
+    if (show_list) return list();
+    if (check_input("strain", strain, 0, 1) || check_input("rate", rate, 0, 1) ||
+        check_input("temperature", temperature, 0, 1) || check_input("density", density, 0, 0) ||
+        check_input("energy", energy, -HUGE_VAL, 0))
+        return 1;
+    if (mpm_material_preset(&m, name, &si, &fault) < 0) return complain("unknown material", name);
+    if (*model && mpm_material_model(&m, model, &fault) < 0)
+        return complain(strcmp(fault.field, "model") ? "this material has no set for the model"
+                                                     : "unknown model", model);
+
+    s.plastic_strain = (mpm_real)strain;
+    s.plastic_rate = (mpm_real)rate;
+    s.temperature = (mpm_real)temperature;
+    s.density = (mpm_real)density;
+    if (mpm_material_pressure(&m, s.density, (mpm_real)energy, &pressure, &fault) < 0 ||
+        mpm_material_hugoniot_pressure(&m, s.density, &hugoniot, &fault) < 0) {
+        fprintf(stderr, "error: %s: %g\n", fault.field, (double)fault.value);
+        return 1;
+    }
+    s.pressure = pressure;
+    print("flow_stress_MPa", 1e-6 * (double)mpm_material_flow_stress(&m, &s));
+    print("shear_modulus_MPa", 1e-6 * (double)mpm_material_shear_modulus(&m, &s));
+    print("melt_temperature_K", (double)mpm_material_melt_temperature(&m, s.density));
+    if (m.strength == MPM_STRENGTH_PTW)
+        print("xidot_per_s", (double)mpm_material_attempt_rate(&m, &s));
+    print("pressure_MPa", 1e-6 * (double)pressure);
+    print("hugoniot_pressure_MPa", 1e-6 * (double)hugoniot);
+    return 0;
+}

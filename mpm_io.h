@@ -2267,7 +2267,7 @@ static inline int mpm__io_log_ticks(double low, double high, mpm__io_tick *ticks
             if (at < low - 1e-9 || at > high + 1e-9 || (skip > 1 && digit > 1)) continue;
             ticks[n].at = at;
             ticks[n].text[0] = 0;
-            if (named && ((decade > -4 && decade < 5) || digit > 1))
+            if (named && ((decade > -4 && decade < 4) || digit > 1))
                 mpm__io_short(ticks[n].text, 32, digit * pow(10.0, decade), 3);
             else if (named) snprintf(ticks[n].text, 32, "10^%d", decade);
             n++;
@@ -2275,13 +2275,14 @@ static inline int mpm__io_log_ticks(double low, double high, mpm__io_tick *ticks
     return n;
 }
 
-/* Ticks at nice values between low and high, about `want` of them. */
+/* Ticks at nice values between low and high, with at most `want` steps (but two). */
 static inline int mpm__io_ticks(double low, double high, int is_log, int want, mpm__io_tick *ticks)
 {
-    double step = mpm__io_nice((high - low) / (want > 1 ? want : 1) * 1.4), k;
+    double step = mpm__io_nice((high - low) / (want > 2 ? want : 2)), k;
     double largest = fabs(low) > fabs(high) ? fabs(low) : fabs(high);
     int n = 0;
     if (is_log) return mpm__io_log_ticks(low, high, ticks);
+    if (step * (want > 2 ? want : 2) < 0.999 * (high - low)) step = mpm__io_nice(2.51 * step);
     for (k = ceil(low / step - 1e-6); k * step <= high + 1e-6 * step && n < MPM__IO_TICKS; k++) {
         ticks[n].at = k * step;
         mpm__io_tick_number(ticks[n++].text, k * step, step, largest);
@@ -2696,19 +2697,23 @@ static inline size_t mpm__io_cut_dots(const mpm_io_cut_desc *d, mpm__io_dot *dot
 /* A cut is painted at twice the resolution and averaged: `layer` is what one body contributes,
    `best` what is visible so far. */
 typedef struct mpm__io_paint {
-    int width, height;      /* in half pixels */
-    float *weight, *sum;    /* layer: kernel weights, and weighted values */
-    float *near;            /* layer: squared distance of the nearest dot */
-    float *best, *value;    /* visible: weight and value */
-    int32_t *body;          /* visible: body + 1, or 0 for none */
-    int box[4];             /* part of the layer in use */
+    int width, height;    /* in half pixels */
+    float *weight;        /* layer: sum of the kernels, a measure of how much body there is */
+    float *near;          /* layer: squared distance of the nearest dot, in its size */
+    float *norm, *sum;    /* layer: weights of the values, and weighted values */
+    float *best, *value;  /* visible: weight and value */
+    int32_t *body;        /* visible: body, counted from 1, or 0 for none */
+    int box[4];           /* part of the layer in use */
 } mpm__io_paint;
 
 #define MPM__IO_FINE 2       /* half pixels per pixel */
-#define MPM__IO_REACH 1.5    /* radius of a dot's kernel, in its size */
-#define MPM__IO_SURFACE 0.71 /* weight at the surface: a lone dot then covers about its own area */
+#define MPM__IO_REACH 2.0    /* radius of a dot's kernel, in its size */
+#define MPM__IO_FULL 4.19    /* sum of the kernels inside a lattice of dots: pi REACH^2 / 3 */
+#define MPM__IO_SURFACE 0.42 /* share of it at the surface; one half would be exact on a plane */
+#define MPM__IO_CORE 0.36    /* radius around each dot that is always shown, in its size */
 
-/* Adds a dot to the layer: weight (1 - r^2 / R^2)^2 within R. (x, y) and size in half pixels. */
+/* Adds a dot to the layer: weight w = (1 - r^2 / R^2)^2 within R, and w^2 for its value.
+   (x, y) and size in half pixels. */
 static inline void mpm__io_splat(mpm__io_paint *p, double x, double y, double size, double value,
                                  int nearest)
 {
@@ -2722,12 +2727,18 @@ static inline void mpm__io_splat(mpm__io_paint *p, double x, double y, double si
             size_t at = (size_t)j * (size_t)p->width + (size_t)i;
             double dx = i + 0.5 - x, dy = j + 0.5 - y, q = dx * dx + dy * dy;
             double w = 1 - q / (radius * radius);
+            int nearer;
             if (w <= 0) continue;
             w *= w;
+            q *= MPM__IO_REACH * MPM__IO_REACH / (radius * radius);
+            nearer = q < (double)p->near[at];
+            if (nearer) p->near[at] = (float)q;
             p->weight[at] += (float)w;
-            if (!nearest) p->sum[at] += (float)(w * value);
-            else if (q < (double)p->near[at]) {
-                p->near[at] = (float)q;
+            if (!nearest) {
+                p->norm[at] += (float)(w * w);
+                p->sum[at] += (float)(w * w * value);
+            } else if (nearer) {
+                p->norm[at] = 1;
                 p->sum[at] = (float)value;
             }
         }
@@ -2737,20 +2748,39 @@ static inline void mpm__io_splat(mpm__io_paint *p, double x, double y, double si
     if (bottom > p->box[3]) p->box[3] = bottom;
 }
 
-/* Shows the layer where it outweighs what is visible, and clears it for the next body. */
-static inline void mpm__io_show_layer(mpm__io_paint *p, int32_t body, int nearest)
+/* The weight at the surface of the layer. A slab that holds several dots behind each other weighs
+   more throughout: then the body's own mean weight counts. */
+static inline double mpm__io_surface(const mpm__io_paint *p)
 {
+    double sum = 0, square = 0, mean;
+    int i, j;
+    for (j = p->box[1]; j < p->box[3]; j++)
+        for (i = p->box[0]; i < p->box[2]; i++) {
+            double w = (double)p->weight[(size_t)j * (size_t)p->width + (size_t)i];
+            sum += w;
+            square += w * w;
+        }
+    mean = sum > 0 ? square / sum : 0;
+    return MPM__IO_SURFACE * (mean > MPM__IO_FULL ? mean : MPM__IO_FULL);
+}
+
+/* Shows the layer where it outweighs what is visible, and clears it for the next body. The
+   core of each dot is always shown, so that single points do not vanish. */
+static inline void mpm__io_show_layer(mpm__io_paint *p, int32_t body)
+{
+    float surface = (float)mpm__io_surface(p);
     int i, j;
     for (j = p->box[1]; j < p->box[3]; j++)
         for (i = p->box[0]; i < p->box[2]; i++) {
             size_t at = (size_t)j * (size_t)p->width + (size_t)i;
             float w = p->weight[at];
-            if (w > (float)MPM__IO_SURFACE && w > p->best[at]) {
+            if ((w > surface || p->near[at] < (float)(MPM__IO_CORE * MPM__IO_CORE)) &&
+                w > p->best[at]) {
                 p->best[at] = w;
-                p->value[at] = nearest ? p->sum[at] : p->sum[at] / w;
+                p->value[at] = p->sum[at] / p->norm[at];
                 p->body[at] = body;
             }
-            p->weight[at] = p->sum[at] = 0;
+            p->weight[at] = p->norm[at] = p->sum[at] = 0;
             p->near[at] = 1e30f;
         }
     p->box[0] = p->width;
@@ -2781,7 +2811,7 @@ static inline void mpm__io_paint_dots(mpm__io_paint *p, const mpm__io_axes *a,
                 more = 1;
             }
         }
-        mpm__io_show_layer(p, shown, nearest);
+        mpm__io_show_layer(p, shown);
     }
 }
 
@@ -2860,15 +2890,16 @@ static inline mpm_status mpm__io_cut_bodies(mpm_io_canvas *c, const mpm__io_axes
     p.width = MPM__IO_FINE * (int)(a->right - a->left + 0.5);
     p.height = MPM__IO_FINE * (int)(a->bottom - a->top + 0.5);
     pixels = (size_t)p.width * (size_t)p.height;
-    memory = (float *)MPM_MALLOC(pixels * 6 * sizeof(float));
+    memory = (float *)MPM_MALLOC(pixels * 7 * sizeof(float));
     if (!memory) return MPM_ERR_MEMORY;
-    memset(memory, 0, pixels * 6 * sizeof(float));
+    memset(memory, 0, pixels * 7 * sizeof(float));
     p.weight = memory;
-    p.sum = memory + pixels;
-    p.near = memory + 2 * pixels;
-    p.best = memory + 3 * pixels;
-    p.value = memory + 4 * pixels;
-    p.body = (int32_t *)(void *)(memory + 5 * pixels);
+    p.near = memory + pixels;
+    p.norm = memory + 2 * pixels;
+    p.sum = memory + 3 * pixels;
+    p.best = memory + 4 * pixels;
+    p.value = memory + 5 * pixels;
+    p.body = (int32_t *)(void *)(memory + 6 * pixels);
     for (i = 0; i < pixels; i++) p.near[i] = 1e30f;
     p.box[0] = p.width;
     p.box[1] = p.height;
@@ -2878,21 +2909,40 @@ static inline mpm_status mpm__io_cut_bodies(mpm_io_canvas *c, const mpm__io_axes
     return MPM_OK;
 }
 
-/* A nice length, on a white plate at the lower left. */
+/* Whether a part of the picture is still white. */
+static inline int mpm__io_blank(const mpm_io_canvas *c, double x, double y, double width,
+                                double height)
+{
+    int i, j, right = mpm__io_whole(x + width, 0, c->width);
+    int bottom = mpm__io_whole(y + height, 0, c->height);
+    for (j = mpm__io_whole(y, 0, c->height); j < bottom; j++)
+        for (i = mpm__io_whole(x, 0, c->width); i < right; i++)
+            if (mpm_io_pixel(c, i, j) != 0xffffff) return 0;
+    return 1;
+}
+
+/* A nice length, in the first blank corner of the frame (lower ones first), or else on a white
+   plate at the lower left. */
 static inline void mpm__io_scale_bar(mpm_io_canvas *c, const mpm__io_axes *a, double length_scale,
                                      const char *unit)
 {
     char number[32], text[80];
     double u = c->unit, size = MPM__IO_NUMBER * u, wide = a->right - a->left;
     double whole = (a->high[0] - a->low[0]) * length_scale, nice = mpm__io_nice(0.28 * whole);
-    double bar = wide * nice / whole, room, x = a->left + 12 * u, y = a->bottom - 12 * u;
+    double bar = wide * nice / whole, width, height = size + 19 * u, x = 0, y = 0;
+    int corner;
     mpm__io_short(number, sizeof number, nice, 3);
     snprintf(text, sizeof text, "%.30s %.40s", number, unit);
-    room = mpm_io_text_width(size, text);
-    if (room < bar) room = bar;
-    mpm_io_rectangle(c, x, y - size - 19 * u, room + 16 * u, size + 19 * u, 0xffffff);
-    mpm_io_rectangle(c, x + 8 * u + 0.5 * (room - bar), y - 9 * u, bar, 3 * u, MPM__IO_INK);
-    mpm_io_text(c, x + 8 * u + 0.5 * room, y - 13 * u, size, MPM_IO_CENTER, MPM__IO_INK, text);
+    width = mpm_io_text_width(size, text);
+    width = (width < bar ? bar : width) + 16 * u;
+    for (corner = 0; corner < 5; corner++) {
+        x = corner % 4 % 2 ? a->right - 9 * u - width : a->left + 9 * u;
+        y = corner % 4 / 2 ? a->top + 9 * u : a->bottom - 9 * u - height;
+        if (mpm__io_blank(c, x, y, width, height)) break;
+    }
+    mpm_io_rectangle(c, x, y, width, height, 0xffffff);
+    mpm_io_rectangle(c, x + 0.5 * (width - bar), y + height - 9 * u, bar, 3 * u, MPM__IO_INK);
+    mpm_io_text(c, x + 0.5 * width, y + 6 * u + size, size, MPM_IO_CENTER, MPM__IO_INK, text);
 }
 
 /* What surrounds a cut. */

@@ -17,7 +17,7 @@
 static void equal(const char *what, long got, long wanted) { CHECK_EQUAL(what, got, wanted); }
 static void holds(const char *what, int condition) { CHECK_TRUE(what, condition); }
 
-/* ---- helpers ------------------------------------------------------------------------------- */
+/* ---- reading back ---------------------------------------------------------------------------- */
 
 /* The whole of a file in fresh memory, with a zero behind; NULL when it is not there. */
 static unsigned char *slurp(const char *path, size_t *n)

@@ -673,7 +673,6 @@ static mpm_status make_world(mpm_world *w)
     d.cell = MPM_R(0.1);
     d.cells[0] = d.cells[1] = d.cells[2] = 12;
     d.points = 2600;
-    d.nodes = 4000;
     d.bodies = 2;
     status = mpm_init(w, &d, NULL, 0);
     b.spacing = MPM_R(0.05);

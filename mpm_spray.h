@@ -1510,7 +1510,7 @@ static inline mpm_real mpm__spray_bin_edge(const mpm_spray *s)
             high[k] = i ? mpm__spray_max(high[k], s->middle[3 * i + k]) : s->middle[k];
         }
     for (k = 0; k < 3; k++) volume *= (high[k] - low[k]) / least; /* in bins of the least edge */
-    if (!(volume > s->live)) return least;
+    if (!(volume > (mpm_real)s->live)) return least;
     return least * mpm__spray_min(4, mpm__spray_max(1, mpm__spray_cbrt(volume / (mpm_real)s->live) / 3));
 }
 
@@ -1587,14 +1587,17 @@ static inline void mpm__spray_heap_update(mpm_spray *s, int32_t i)
 static inline mpm_real mpm__spray_meet(const mpm_spray *s, const mpm_real *x, const mpm_real *w,
                                        mpm_real reach, mpm_real left)
 {
-    mpm_real a = mpm__spray_dot(w, w), b = mpm__spray_dot(x, w);
-    mpm_real c = mpm__spray_dot(x, x) - reach * reach, root, t;
-    if (s->desc.contact == MPM_SPRAY_OVERLAP) /* only the end of the step is looked at */
+    mpm_real b = mpm__spray_dot(x, w), c = mpm__spray_dot(x, x) - reach * reach, a, root, t;
+    if (s->desc.contact == MPM_SPRAY_OVERLAP) { /* only the end of the step is looked at */
+        a = mpm__spray_dot(w, w);
         return b + a * left < 0 && c + 2 * b * left + a * left * left <= 0 ? left : MPM__SPRAY_NEVER;
-    if (!(b < 0)) return MPM__SPRAY_NEVER;  /* drifting apart (B 40) */
-    if (c <= 0) return 0;                   /* touching already */
+    }
+    if (!(b < 0)) return MPM__SPRAY_NEVER;          /* drifting apart (B 40) */
+    if (c <= 0) return 0;                           /* touching already */
+    if (c > -2 * b * left) return MPM__SPRAY_NEVER; /* too far: the root below is at least -c / 2b */
+    a = mpm__spray_dot(w, w);
     root = b * b - a * c;
-    if (root < 0) return MPM__SPRAY_NEVER;  /* passing by */
+    if (root < 0) return MPM__SPRAY_NEVER;          /* passing by */
     t = c / (mpm__spray_sqrt(root) - b);
     return t <= left ? t : MPM__SPRAY_NEVER;
 }
@@ -1649,13 +1652,16 @@ static inline void mpm__spray_offer_deposit(mpm_spray *s, int32_t i, int32_t hos
 
 static inline void mpm__spray_offer_pair(mpm_spray *s, int32_t i, int32_t j)
 {
-    mpm_real now = mpm__spray_max(s->clock[i], s->clock[j]), x[3], w[3];
-    int d;
-    for (d = 0; d < 3; d++) {
-        mpm_real wi = s->path[3 * i + d], wj = s->path[3 * j + d];
-        x[d] = s->x[3 * i + d] + (now - s->clock[i]) * wi - s->x[3 * j + d] - (now - s->clock[j]) * wj;
-        w[d] = wi - wj;
-    }
+    const mpm_real *xi = s->x + 3 * i, *xj = s->x + 3 * j, *wi = s->path + 3 * i, *wj = s->path + 3 * j;
+    mpm_real now = mpm__spray_max(s->clock[i], s->clock[j]);
+    mpm_real ti = now - s->clock[i], tj = now - s->clock[j];
+    mpm_real w[3], x[3]; /* spelt out below: this is where a dense spray spends its time */
+    w[0] = wi[0] - wj[0];
+    w[1] = wi[1] - wj[1];
+    w[2] = wi[2] - wj[2];
+    x[0] = xi[0] + ti * wi[0] - xj[0] - tj * wj[0];
+    x[1] = xi[1] + ti * wi[1] - xj[1] - tj * wj[1];
+    x[2] = xi[2] + ti * wi[2] - xj[2] - tj * wj[2];
     mpm__spray_offer(s, i, now + mpm__spray_meet(s, x, w, s->radius[i] + s->radius[j], s->desc.dt - now),
                      MPM__SPRAY_PAIR, j);
 }
@@ -1687,21 +1693,34 @@ static inline void mpm__spray_look_at_deposit(mpm_spray *s, int32_t i)
     for (k = 0; k < n; k++) mpm__spray_offer_deposit(s, i, s->list[k]);
 }
 
-/* Finds the next contact of particle i. In the first round a pair is looked at from its lower
-   number only; later, every partner counts, since only i's path has changed. */
-static inline void mpm__spray_look(mpm_spray *s, int32_t i, int first_round)
+/* The partners of particle i. In the first round a pair is looked at from its lower number only;
+   later every partner counts, since only i's path has changed. */
+static inline void mpm__spray_look_at_flight(mpm_spray *s, int32_t i, int first_round)
 {
     mpm_real low[3], high[3];
-    int32_t n, k;
-    s->kind[i] = MPM__SPRAY_NOTHING;
-    for (k = 0; k < s->planes; k++) mpm__spray_offer_plane(s, i, k);
-    mpm__spray_look_at_deposit(s, i);
+    int32_t j, n, k, first = first_round ? i + 1 : 0;
+    if (s->desc.search == MPM_SPRAY_ALL_PAIRS) {
+        for (j = first; j < s->live; j++)
+            if (j != i && !s->gone[j]) mpm__spray_offer_pair(s, i, j);
+        return;
+    }
     mpm__spray_path_box(s, i, s->radius[i] + s->radius_max + s->reach, low, high);
-    n = s->desc.search == MPM_SPRAY_BINS ? mpm__spray_gather(&s->bins, low, high, s->list)
-                                         : mpm__spray_everything(&s->bins, s->list);
+    n = mpm__spray_gather(&s->bins, low, high, s->list);
     for (k = 0; k < n; k++) {
-        int32_t j = s->list[k];
-        if (first_round ? j > i : j != i && !s->gone[j]) mpm__spray_offer_pair(s, i, j);
+        j = s->list[k];
+        if (j >= first && j != i && !s->gone[j]) mpm__spray_offer_pair(s, i, j);
+    }
+}
+
+/* Finds the next contact of particle i. */
+static inline void mpm__spray_look(mpm_spray *s, int32_t i, int first_round)
+{
+    int k;
+    s->kind[i] = MPM__SPRAY_NOTHING;
+    if (s->stamp[i] < s->desc.contacts_max) { /* else it has stopped for this step: see set_out */
+        for (k = 0; k < s->planes; k++) mpm__spray_offer_plane(s, i, k);
+        mpm__spray_look_at_deposit(s, i);
+        mpm__spray_look_at_flight(s, i, first_round);
     }
     mpm__spray_heap_update(s, i);
 }

@@ -985,6 +985,8 @@ static inline mpm_status mpm__spray_check_domain(const mpm_spray_desc *d, mpm_fa
     mpm__spray_rule r[8];
     mpm_status status;
     int n = 0, k;
+    r[n++] = mpm__spray_rule_of("stand_off", d->stand_off, /* a target inside the nozzle */
+                                d->plane_count > 0 || d->stand_off > mpm__spray_diameter_max(d));
     for (k = 0; k < 3; k++) {
         r[n++] = mpm__spray_rule_of(low[k], d->low[k], !(d->low[k] >= d->high[k]));
         r[n++] = mpm__spray_rule_of(high[k], d->high[k], d->high[k] > d->low[k]);
@@ -992,8 +994,6 @@ static inline mpm_status mpm__spray_check_domain(const mpm_spray_desc *d, mpm_fa
     r[n++] = mpm__spray_rule_of("plane_count", (mpm_real)d->plane_count,
                                 d->plane_count >= 0 && d->plane_count <= MPM_SPRAY_PLANES &&
                                     (d->plane_count == 0 || d->planes));
-    r[n++] = mpm__spray_rule_of("stand_off", d->stand_off, /* a target inside the nozzle */
-                                d->plane_count > 0 || d->stand_off > mpm__spray_diameter_max(d));
     if ((status = mpm__spray_judge(r, n, f)) != MPM_OK) return status;
     for (k = 0; k < d->plane_count; k++)
         if ((status = mpm__spray_check_plane(&d->planes[k], f, k)) != MPM_OK) return status;

@@ -1,0 +1,570 @@
+/* spray - powder from a nozzle to a target: flight, collisions, deposition (source B, its Table 1).
+
+   Run without options it is the paper's long run (its Fig. 6): 50 050 particles of median radius
+   80 um, size shape 5, fed 50 per 0.5 ms into a jet of 50 m/s, released at 0 to 50 m/s, target at
+   0.30 m. Expect about 76 % deposited at alpha 1e5 and an impact speed of about 29 m/s; it takes
+   less than a minute. Everything goes into --out: summary.json, impacts.csv (one row per first
+   impact: what is needed to simulate the impacts themselves), a VTK series, and two pictures.
+   SPDX-License-Identifier: MIT */
+#define MPM_IMPLEMENTATION
+#include "mpm_spray.h"
+#include "mpm_io.h"
+
+#include <time.h>
+
+#include "options.h"
+#include "spray_view.h"
+
+/* ---- options ------------------------------------------------------------------------------- */
+
+typedef struct settings {
+    const char *gas, *release, *gamma12, *restitution, *contact, *deposit, *criterion, *out, *restart;
+    double speed, alpha, friction, median_radius, shape, size_min, size_max, feed, dt, time, theta, box;
+    double stand_off, critical, erosion;
+    long batch, particles, steps, seed, frames;
+    int quiet;
+} settings;
+
+static settings settings_default(void)
+{
+    settings o;
+    memset(&o, 0, sizeof o);
+    o.gas = "jet";
+    o.speed = 50;
+    o.release = "0:speed";
+    o.alpha = 1e5;
+    o.gamma12 = "dispersion";
+    o.restitution = "johnson";
+    o.friction = 0.55;
+    o.median_radius = 80;
+    o.shape = 5;
+    o.size_min = 1;
+    o.feed = 1e5;
+    o.batch = 50;
+    o.dt = 5e-6;
+    o.time = 0.5005;
+    o.theta = 0.5;
+    o.contact = "swept";
+    o.deposit = "stick";
+    o.criterion = "adhesion";
+    o.erosion = HUGE_VAL;
+    o.box = 0.05;
+    o.stand_off = 0.30;
+    o.seed = 1;
+    o.out = "spray-out";
+    o.restart = "";
+    o.frames = 20;
+    return o;
+}
+
+#define OPTION_COUNT 31
+
+static void option_row(option *o, int *n, const char *name, option_type type, void *value, const char *help)
+{
+    o[*n].name = name;
+    o[*n].type = type;
+    o[*n].value = value;
+    o[(*n)++].help = help;
+}
+
+static int option_rows(option *o, settings *s)
+{
+    int n = 0;
+    option_row(o, &n, "gas", OPTION_TEXT, &s->gas, "jet | jet-axisymmetric | uniform | still");
+    option_row(o, &n, "speed", OPTION_REAL, &s->speed, "of the gas at the nozzle, m/s");
+    option_row(o, &n, "release", OPTION_TEXT, &s->release, "LOW:HIGH release velocity, uniform between, m/s");
+    option_row(o, &n, "alpha", OPTION_REAL, &s->alpha, "adhesion factor alpha_ADH; inf: all stick");
+    option_row(o, &n, "gamma12", OPTION_TEXT, &s->gamma12, "interface energy, J/m^2 | dispersion | difference");
+    option_row(o, &n, "restitution", OPTION_TEXT, &s->restitution, "johnson | CONSTANT");
+    option_row(o, &n, "friction", OPTION_REAL, &s->friction, "Coulomb coefficient");
+    option_row(o, &n, "median-radius", OPTION_REAL, &s->median_radius, "um");
+    option_row(o, &n, "shape", OPTION_REAL, &s->shape, "n of the size distribution");
+    option_row(o, &n, "size-min", OPTION_REAL, &s->size_min, "smallest diameter, um");
+    option_row(o, &n, "size-max", OPTION_REAL, &s->size_max, "largest diameter, um; 0: the nozzle radius");
+    option_row(o, &n, "feed", OPTION_REAL, &s->feed, "particles/s");
+    option_row(o, &n, "batch", OPTION_LONG, &s->batch, "particles injected together");
+    option_row(o, &n, "particles", OPTION_LONG, &s->particles, "stop the feed after so many; 0: never");
+    option_row(o, &n, "dt", OPTION_REAL, &s->dt, "time step, s");
+    option_row(o, &n, "steps", OPTION_LONG, &s->steps, "how many; 0: as --time says");
+    option_row(o, &n, "time", OPTION_REAL, &s->time, "end time, s");
+    option_row(o, &n, "theta", OPTION_REAL, &s->theta, "0 explicit, 0.5 trapezoidal, 1 implicit");
+    option_row(o, &n, "contact", OPTION_TEXT, &s->contact, "swept | overlap");
+    option_row(o, &n, "deposit", OPTION_TEXT, &s->deposit, "stick | always | bounce | ignore");
+    option_row(o, &n, "criterion", OPTION_TEXT, &s->criterion, "adhesion | window (cold spray, aluminium)");
+    option_row(o, &n, "critical", OPTION_REAL, &s->critical, "window: critical velocity, m/s; 0: by size");
+    option_row(o, &n, "erosion", OPTION_REAL, &s->erosion, "window: no bond above, m/s");
+    option_row(o, &n, "stand-off", OPTION_REAL, &s->stand_off, "nozzle to target, m");
+    option_row(o, &n, "box", OPTION_REAL, &s->box, "half width of the domain, m");
+    option_row(o, &n, "seed", OPTION_LONG, &s->seed, "of the random numbers");
+    option_row(o, &n, "out", OPTION_TEXT, &s->out, "folder for the results");
+    option_row(o, &n, "frames", OPTION_LONG, &s->frames, "VTK files over the run; 0: none");
+    option_row(o, &n, "restart", OPTION_TEXT, &s->restart, "go on from this checkpoint.bin to --steps or --time");
+    option_row(o, &n, "quiet", OPTION_FLAG, &s->quiet, "no progress, no table");
+    return n;
+}
+
+/* The place of text in a list of words separated by '|', or -1 after a message. */
+static int choose(const char *option_name, const char *text, const char *words)
+{
+    const char *w = words;
+    int n = 0;
+    size_t length = strlen(text);
+    while (*w) {
+        size_t end = strcspn(w, "|");
+        if (end == length && !strncmp(w, text, end)) return n;
+        w += end + (w[end] == '|');
+        n++;
+    }
+    fprintf(stderr, "error: --%s must be one of %s, not '%s'\n", option_name, words, text);
+    return -1;
+}
+
+/* A number, the whole text. Returns 0, or -1 (no message). */
+static int number(const char *text, const char *end_at, double *value)
+{
+    char *end;
+    *value = strtod(text, &end);
+    return end == text || end != end_at ? -1 : 0;
+}
+
+static int parse_release(const settings *o, mpm_real *release)
+{
+    const char *colon = strchr(o->release, ':');
+    double low, high;
+    release[0] = 0;
+    release[1] = (mpm_real)o->speed;
+    if (!strcmp(o->release, "0:speed")) return 0;
+    if (!colon || number(o->release, colon, &low) || number(colon + 1, colon + strlen(colon), &high)) {
+        fprintf(stderr, "error: --release needs LOW:HIGH, not '%s'\n", o->release);
+        return -1;
+    }
+    release[0] = (mpm_real)low;
+    release[1] = (mpm_real)high;
+    return 0;
+}
+
+/* Words and numbers that share an option. */
+static int parse_mixed(const settings *o, mpm_spray_desc *d)
+{
+    double v;
+    if (!strcmp(o->gamma12, "difference")) {
+        d->mixing = MPM_SPRAY_MIXING_DIFFERENCE;
+    } else if (strcmp(o->gamma12, "dispersion")) {
+        if (number(o->gamma12, o->gamma12 + strlen(o->gamma12), &v) || !(v > 0)) {
+            fprintf(stderr, "error: --gamma12 must be dispersion, difference or above 0, not '%s'\n", o->gamma12);
+            return -1;
+        }
+        d->gamma_target = (mpm_real)v;
+    }
+    if (strcmp(o->restitution, "johnson")) {
+        if (number(o->restitution, o->restitution + strlen(o->restitution), &v) || !(v >= 0 && v <= 1)) {
+            fprintf(stderr, "error: --restitution must be johnson or 0 to 1, not '%s'\n", o->restitution);
+            return -1;
+        }
+        d->rebound = MPM_SPRAY_REBOUND_CONSTANT;
+        d->restitution = (mpm_real)v;
+    }
+    return 0;
+}
+
+static int parse_words(const settings *o, mpm_spray_desc *d)
+{
+    int gas = choose("gas", o->gas, "jet|jet-axisymmetric|uniform|still");
+    int contact = choose("contact", o->contact, "swept|overlap");
+    int deposit = choose("deposit", o->deposit, "stick|always|bounce|ignore");
+    if (gas < 0 || contact < 0 || deposit < 0) return -1;
+    d->gas = (mpm_spray_gas)gas;
+    d->contact = (mpm_spray_contact)contact;
+    d->deposit = (mpm_spray_deposit)deposit;
+    return 0;
+}
+
+static int parse_criterion(const settings *o, mpm_spray_desc *d, mpm_spray_window *w)
+{
+    int which = choose("criterion", o->criterion, "adhesion|window");
+    *w = mpm_spray_window_aluminium();
+    w->erosion = (mpm_real)o->erosion;
+    if (o->critical > 0) {
+        w->critical = (mpm_real)o->critical;
+        w->slope = 0;
+    }
+    if (which == 1) {
+        d->stick = mpm_spray_stick_window;
+        d->stick_user = w;
+    }
+    return which < 0 ? -1 : 0;
+}
+
+static int bad_number(const char *name, double value, const char *want)
+{
+    fprintf(stderr, "error: --%s is %g, but must be %s\n", name, value, want);
+    return -1;
+}
+
+/* The run's length in steps, and room for all that will be fed in it. */
+static int parse_length(const settings *o, mpm_spray_desc *d, long *steps)
+{
+    double count, most;
+    if (o->steps < 0) return bad_number("steps", (double)o->steps, "0 or more");
+    if (o->steps == 0 && !(o->time > 0 && o->time < 1e9)) return bad_number("time", o->time, "above 0");
+    if (o->frames < 0) return bad_number("frames", (double)o->frames, "0 or more");
+    if (o->batch < 1 || o->batch > 1000000) return bad_number("batch", (double)o->batch, "1 to 1e6");
+    if (o->particles < 0) return bad_number("particles", (double)o->particles, "0 or more");
+    if (!(o->dt > 0)) return bad_number("dt", o->dt, "above 0");
+    if (!(o->feed > 0)) return bad_number("feed", o->feed, "above 0");
+    if (!(o->box > 0)) return bad_number("box", o->box, "above 0");
+    count = o->steps > 0 ? (double)o->steps : floor(o->time / o->dt + 0.5);
+    most = count * o->dt * o->feed + 2.0 * (double)o->batch;
+    if (o->particles > 0 && most > (double)o->particles) most = (double)o->particles;
+    if (most > 1e9) return bad_number("feed", o->feed, "smaller: more than 1e9 particles in this run");
+    if (count < 1 || count > 1e15) return bad_number("time", o->time, "at least one step");
+    *steps = (long)count;
+    d->capacity = (int32_t)most;
+    return 0;
+}
+
+static int describe(const settings *o, mpm_spray_desc *d, mpm_spray_window *w, long *steps)
+{
+    *d = mpm_spray_desc_default();
+    d->gas_speed = (mpm_real)o->speed;
+    d->alpha = (mpm_real)o->alpha;
+    d->friction = (mpm_real)o->friction;
+    d->median_radius = (mpm_real)(o->median_radius * 1e-6);
+    d->size_shape = (mpm_real)o->shape;
+    d->diameter_min = (mpm_real)(o->size_min * 1e-6);
+    d->diameter_max = (mpm_real)(o->size_max * 1e-6);
+    d->feed = (mpm_real)o->feed;
+    d->batch = (int32_t)o->batch;
+    d->total = o->particles;
+    d->dt = (mpm_real)o->dt;
+    d->theta = (mpm_real)o->theta;
+    d->stand_off = (mpm_real)o->stand_off;
+    d->low[1] = d->low[2] = (mpm_real)-o->box;
+    d->high[1] = d->high[2] = (mpm_real)o->box;
+    d->high[0] = d->stand_off + MPM_R(0.02);
+    d->seed = (uint64_t)o->seed;
+    if (parse_words(o, d) || parse_release(o, d->release) || parse_mixed(o, d) || parse_criterion(o, d, w)) return -1;
+    return parse_length(o, d, steps);
+}
+
+/* ---- output -------------------------------------------------------------------------------- */
+
+static int complain(const mpm_fault *fault)
+{
+    char text[256];
+    mpm_io_fault_text(text, sizeof text, fault);
+    fprintf(stderr, "error: %s\n", text);
+    return 1;
+}
+
+/* One row of impacts.csv per first touch. */
+static void write_impact(void *user, const mpm_spray_touch *t)
+{
+    mpm_io_csv *csv = (mpm_io_csv *)user;
+    int k;
+    if (!t->first) return;
+    mpm_io_csv_real(csv, t->time);
+    for (k = 0; k < 3; k++) mpm_io_csv_real(csv, t->x[k]);
+    for (k = 0; k < 3; k++) mpm_io_csv_real(csv, t->v[k]);
+    mpm_io_csv_real(csv, 2 * t->radius);
+    mpm_io_csv_integer(csv, t->stuck);
+    mpm_io_csv_integer(csv, t->id);
+    mpm_io_csv_integer(csv, t->host >= 0);
+}
+
+#define IMPACT_COLUMNS "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,diameter_m,stuck,id,on_deposit"
+
+/* All particles, in flight and deposited, as one VTK file. */
+static mpm_status write_frame(const char *folder, const mpm_spray *s, spray_columns *c, int number_of_frame,
+                              const char *note, mpm_fault *fault)
+{
+    static const mpm_real none[3] = {0, 0, 0};
+    char path[MPM_IO_PATH], name[64];
+    mpm_io_field field[4];
+    mpm_io_vtu_desc d = mpm_io_vtu_desc_default();
+    int32_t i, n = s->live + s->deposited;
+    mpm_status status;
+    int k;
+    for (i = 0; i < n; i++) {
+        int32_t j = i - s->live;
+        const mpm_real *x = j < 0 ? s->x + 3 * i : s->deposit_x + 3 * j;
+        const mpm_real *v = j < 0 ? s->v + 3 * i : none;
+        for (k = 0; k < 3; k++) {
+            c->column[k][i] = x[k];
+            c->column[3 + k][i] = v[k];
+        }
+        c->column[6][i] = 2 * (j < 0 ? s->radius[i] : s->deposit_radius[j]);
+        c->column[7][i] = j < 0 ? -1 : s->deposit_time[j];
+        c->state[i] = j >= 0;
+    }
+    field[0] = mpm_io_vector("velocity", c->column[3], c->column[4], c->column[5], 1);
+    field[1] = mpm_io_scalar("diameter", c->column[6], 1);
+    field[2] = mpm_io_scalar("arrival", c->column[7], 1);
+    field[3] = mpm_io_int32("deposited", c->state);
+    d.count = (size_t)n;
+    for (k = 0; k < 3; k++) d.x[k] = c->column[k];
+    d.fields = field;
+    d.field_count = 4;
+    d.time = (double)mpm_spray_time(s);
+    d.float32 = 1;
+    d.note = note;
+    snprintf(name, sizeof name, "spray-%04d.vtu", number_of_frame);
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    if ((status = mpm_io_vtu(path, &d, fault)) < 0) return status;
+    snprintf(path, sizeof path, "%s/spray.pvd", folder);
+    return mpm_io_pvd_add(path, name, d.time, fault);
+}
+
+static mpm_status write_pictures(const char *folder, const mpm_spray *s, spray_columns *c, const char *note,
+                                 mpm_fault *fault)
+{
+    char path[MPM_IO_PATH];
+    mpm_io_canvas canvas;
+    mpm_status status = MPM_OK;
+    if (s->live + s->deposited > 0) {
+        if ((status = mpm_io_canvas_init(&canvas, 1500, 640, NULL, 0)) < 0) return status;
+        status = spray_draw_plume(&canvas, mpm_io_tile(&canvas, 1, 1, 0), s, c, (double)s->desc.gas_speed,
+                                  "plume, from the side", fault);
+        snprintf(path, sizeof path, "%s/plume.png", folder);
+        if (status >= 0) status = mpm_io_png(path, &canvas, note, fault);
+        mpm_io_canvas_free(&canvas);
+    }
+    if (s->deposited > 0 && status >= 0) {
+        if ((status = mpm_io_canvas_init(&canvas, 1100, 1200, NULL, 0)) < 0) return status;
+        status = spray_draw_deposit(&canvas, mpm_io_tile(&canvas, 1, 1, 0), s, c, 25, "deposit, from above", fault);
+        snprintf(path, sizeof path, "%s/deposit.png", folder);
+        if (status >= 0) status = mpm_io_png(path, &canvas, note, fault);
+        mpm_io_canvas_free(&canvas);
+    }
+    return status;
+}
+
+/* A checkpoint is two files: the state, and beside it (.size) how many bytes that is. */
+static mpm_status checkpoint_size(const char *path, int write, int64_t *bytes, mpm_fault *fault)
+{
+    char name[MPM_IO_PATH];
+    mpm_io_blob blob;
+    blob.name = "spray bytes";
+    blob.bytes = sizeof *bytes;
+    blob.data = bytes;
+    snprintf(name, sizeof name, "%s.size", path);
+    return write ? mpm_io_checkpoint_write(name, &blob, 1, fault) : mpm_io_checkpoint_read(name, &blob, 1, fault);
+}
+
+static mpm_status write_checkpoint(const char *path, const mpm_spray *s, mpm_fault *fault)
+{
+    int64_t bytes = (int64_t)mpm_spray_saved_bytes(s);
+    mpm_io_blob blob;
+    mpm_status status;
+    blob.name = "spray";
+    blob.bytes = (size_t)bytes;
+    blob.data = malloc(blob.bytes);
+    if (!blob.data) return MPM_ERR_MEMORY;
+    status = mpm_spray_save(s, blob.data, blob.bytes);
+    if (status >= 0) status = checkpoint_size(path, 1, &bytes, fault);
+    if (status >= 0) status = mpm_io_checkpoint_write(path, &blob, 1, fault);
+    free(blob.data);
+    return status;
+}
+
+static mpm_status read_checkpoint(const char *path, mpm_spray *s, mpm_fault *fault)
+{
+    int64_t bytes = 0;
+    mpm_io_blob blob;
+    mpm_status status = checkpoint_size(path, 0, &bytes, fault);
+    if (status < 0) return status;
+    blob.name = "spray";
+    blob.bytes = (size_t)bytes;
+    blob.data = malloc(blob.bytes);
+    if (!blob.data) return MPM_ERR_MEMORY;
+    status = mpm_io_checkpoint_read(path, &blob, 1, fault);
+    if (status >= 0 && (status = mpm_spray_load(s, blob.data, blob.bytes)) < 0) *fault = s->fault;
+    free(blob.data);
+    return status;
+}
+
+typedef struct result { const char *key, *text, *unit; double value; } result;
+
+#define RESULTS 21
+
+static void result_row(result *r, int *n, const char *key, const char *text, double value, const char *unit)
+{
+    r[*n].key = key;
+    r[*n].text = text;
+    r[*n].unit = unit;
+    r[(*n)++].value = value;
+}
+
+static int results(result *r, const mpm_spray *s, double cpu)
+{
+    mpm_spray_metrics m;
+    double rate = cpu > 0 ? (double)s->tally.particle_steps / cpu : 0;
+    int n = 0;
+    mpm_spray_measure(s, &m);
+    result_row(r, &n, "injected", "injected", (double)m.injected, "");
+    result_row(r, &n, "deposited", "deposited", (double)m.deposited, "");
+    result_row(r, &n, "escaped", "escaped", (double)m.escaped, "");
+    result_row(r, &n, "in_flight", "in flight", (double)m.in_flight, "");
+    result_row(r, &n, "deposit_fraction", "deposit fraction", m.deposit_fraction, "");
+    result_row(r, &n, "late_rate_over_feed", "growth at the end / feed", m.late_rate_over_feed, "");
+    result_row(r, &n, "mean_spread_m", "mean distance from the axis", m.mean_spread, "m");
+    result_row(r, &n, "scatter_m", "its standard deviation", m.scatter, "m");
+    result_row(r, &n, "thickness_m", "thickness of the deposit", m.thickness, "m");
+    result_row(r, &n, "volume_fraction", "volume fraction of the pellet", m.volume_fraction, "");
+    result_row(r, &n, "volume_r5mm_m3", "volume within 5 mm", m.volume_r5mm, "m^3");
+    result_row(r, &n, "volume_r10mm_m3", "volume within 10 mm", m.volume_r10mm, "m^3");
+    result_row(r, &n, "collisions_per_particle", "collisions per particle", m.collisions_per_particle, "");
+    result_row(r, &n, "collided_fraction", "particles that collided", m.collided_fraction, "");
+    result_row(r, &n, "impact_speed_mean_m_s", "impact speed, mean", m.impact_speed_mean, "m/s");
+    result_row(r, &n, "impact_speed_sd_m_s", "impact speed, deviation", m.impact_speed_sd, "m/s");
+    result_row(r, &n, "first_hit_stuck_fraction", "stuck at first impact", m.first_hit_stuck_fraction, "");
+    result_row(r, &n, "fixed_point_not_converged", "iterations not converged", (double)s->tally.not_converged, "");
+    result_row(r, &n, "particle_steps_per_second", "particle-steps per CPU second", rate, "1/s");
+    result_row(r, &n, "simulated_particle_seconds_per_cpu_second", "simulated particle-seconds per CPU second",
+               rate * (double)s->desc.dt, "");
+    result_row(r, &n, "end_time_s", "end time", (double)mpm_spray_time(s), "s");
+    return n;
+}
+
+static mpm_status write_summary(const char *folder, const result *r, int count, const option *o, int options,
+                                mpm_fault *fault)
+{
+    char path[MPM_IO_PATH], text[256];
+    mpm_io_json j;
+    mpm_status status;
+    int k;
+    snprintf(path, sizeof path, "%s/summary.json", folder);
+    if ((status = mpm_io_json_begin(&j, path, fault)) < 0) return status;
+    for (k = 0; k < count; k++) {
+        if (r[k].value == floor(r[k].value) && fabs(r[k].value) < 1e15)
+            mpm_io_json_integer(&j, r[k].key, (long long)r[k].value);
+        else
+            mpm_io_json_number(&j, r[k].key, r[k].value);
+    }
+    mpm_io_json_open(&j, "options");
+    for (k = 0; k < options; k++) {
+        option_text(&o[k], text, sizeof text);
+        mpm_io_json_string(&j, o[k].name, text);
+    }
+    mpm_io_json_close(&j);
+    return mpm_io_json_end(&j, fault);
+}
+
+/* ---- the run ------------------------------------------------------------------------------- */
+
+static void show_progress(const mpm_spray *s, long first, long steps, double elapsed)
+{
+    mpm_io_progress p;
+    char text[160];
+    memset(&p, 0, sizeof p);
+    p.step = (long)s->tally.step;
+    p.first_step = first;
+    p.steps = steps;
+    p.time = (double)mpm_spray_time(s) * 1e3;
+    p.time_unit = "ms";
+    p.points = s->live;
+    p.elapsed = elapsed;
+    mpm_io_progress_text(text, sizeof text, &p);
+    fprintf(stderr, "\r%-78s", text);
+    fflush(stderr);
+}
+
+/* Steps to the end, a frame every so often. *cpu: seconds spent in steps. Returns the status. */
+static mpm_status run(mpm_spray *s, const settings *o, long steps, spray_columns *c, const char *note, double *cpu,
+                      mpm_fault *fault)
+{
+    long first = (long)s->tally.step, every = o->frames > 0 ? (steps + o->frames - 1) / o->frames : steps + 1;
+    mpm_status status = MPM_OK;
+    clock_t begin = clock();
+    time_t shown = time(NULL), started = shown;
+    while (s->tally.step < steps && status >= 0) {
+        long step;
+        if ((status = mpm_spray_step(s)) < 0) *fault = s->fault;
+        step = (long)s->tally.step;
+        if (status >= 0 && (step % every == 0 || (step == steps && o->frames > 0))) {
+            *cpu += (double)(clock() - begin) / CLOCKS_PER_SEC;
+            status = write_frame(o->out, s, c, (int)((step + every - 1) / every), note, fault);
+            begin = clock();
+        }
+        if (!o->quiet && step % 200 == 0 && time(NULL) != shown) {
+            shown = time(NULL);
+            show_progress(s, first, steps, difftime(shown, started));
+        }
+    }
+    *cpu += (double)(clock() - begin) / CLOCKS_PER_SEC;
+    if (!o->quiet) fprintf(stderr, "\r%78s\r", "");
+    return status;
+}
+
+/* What made these files: the options as one line. */
+static void describe_in_words(const option *o, int n, char *note, size_t room)
+{
+    size_t at = 0;
+    int k;
+    note[0] = 0;
+    for (k = 0; k < n; k++) {
+        char text[256];
+        int wrote;
+        option_text(&o[k], text, sizeof text);
+        wrote = snprintf(note + at, room - at, "%s--%s %s", k ? " " : "spray ", o[k].name, text);
+        if (wrote < 0 || (size_t)wrote >= room - at) break;
+        at += (size_t)wrote;
+    }
+}
+
+static mpm_status write_all(mpm_spray *s, const settings *o, const option *row, int rows, spray_columns *c,
+                            const char *note, double cpu, mpm_fault *fault)
+{
+    char path[MPM_IO_PATH];
+    result r[RESULTS];
+    int n = results(r, s, cpu), k;
+    mpm_status status = write_summary(o->out, r, n, row, rows, fault);
+    if (status >= 0) status = write_pictures(o->out, s, c, note, fault);
+    snprintf(path, sizeof path, "%s/checkpoint.bin", o->out);
+    if (status >= 0) status = write_checkpoint(path, s, fault);
+    if (status < 0 || o->quiet) return status;
+    for (k = 0; k < n; k++) printf("%-44s %14.6g %s\n", r[k].text, r[k].value, r[k].unit);
+    printf("%-44s %14.6g %s\n", "memory", (double)s->bytes / 1e6, "MB");
+    printf("results are in %s\n", o->out);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    static const char about[] = "Powder from a nozzle to a target: flight, collisions, deposition.";
+    static char note[4096];
+    settings o = settings_default();
+    option row[OPTION_COUNT];
+    int rows = option_rows(row, &o), parsed = options_parse(argc, argv, about, row, rows);
+    char path[MPM_IO_PATH];
+    mpm_spray s;
+    mpm_spray_desc d;
+    mpm_spray_window window;
+    mpm_io_csv impacts;
+    mpm_fault fault = {MPM_OK, NULL, 0, -1};
+    spray_columns columns;
+    mpm_status status;
+    long steps;
+    double cpu = 0;
+    if (parsed) return parsed > 0 ? 0 : 1;
+    if (describe(&o, &d, &window, &steps)) return 1;
+    d.touch = write_impact;
+    d.touch_user = &impacts;
+    describe_in_words(row, rows, note, sizeof note);
+    if (mpm_spray_init(&s, &d, NULL, 0) < 0) return complain(&s.fault);
+    if (o.restart[0] && read_checkpoint(o.restart, &s, &fault) < 0) {
+        fprintf(stderr, "error: --restart %s\n", o.restart);
+        return complain(&fault);
+    }
+    if (mpm_io_make_directory(o.out, &fault) < 0) return complain(&fault);
+    snprintf(path, sizeof path, "%s/impacts.csv", o.out);
+    if (mpm_io_csv_begin(&impacts, path, IMPACT_COLUMNS, note, &fault) < 0) return complain(&fault);
+    if (spray_columns_init(&columns, (size_t)d.capacity)) return fprintf(stderr, "error: no memory\n"), 1;
+    status = run(&s, &o, steps, &columns, note, &cpu, &fault);
+    if (mpm_io_csv_end(&impacts, status < 0 ? NULL : &fault) < 0 && status >= 0) return complain(&fault);
+    if (status >= 0) status = write_all(&s, &o, row, rows, &columns, note, cpu, &fault);
+    if (status < 0) complain(&fault);
+    spray_columns_free(&columns);
+    mpm_spray_free(&s);
+    return status < 0;
+}

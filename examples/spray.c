@@ -342,7 +342,7 @@ static mpm_status write_pictures(const char *folder, const mpm_spray *s, spray_c
 /* A checkpoint is two files: the state, and beside it (.size) how many bytes that is. */
 static mpm_status checkpoint_size(const char *path, int write, int64_t *bytes, mpm_fault *fault)
 {
-    char name[MPM_IO_PATH];
+    char name[MPM_IO_PATH + 8];
     mpm_io_blob blob;
     blob.name = "spray bytes";
     blob.bytes = sizeof *bytes;

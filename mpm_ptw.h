@@ -109,7 +109,7 @@ typedef enum mpm_eos {
 /* How a trial stress beyond the flow stress comes back to it. */
 typedef enum mpm_return_mapping {
     MPM_RETURN_CONSISTENT,  /* the increment and the rate it implies satisfy the flow law together */
-    MPM_RETURN_STAGED       /* A6 - A8: one explicit estimate, factor capped at 1; first order */
+    MPM_RETURN_STAGED       /* A6 - A8: one explicit estimate, factor capped at 1, for comparison */
 } mpm_return_mapping;
 
 /* How stress follows a rotating material. */
@@ -184,7 +184,7 @@ typedef struct mpm_material {
     mpm_eos eos;
     mpm_return_mapping mapping;
     mpm_rotation rotation;
-    int erf_literal;  /* 0: the argument of erf in A 2.7 is bounded below by 0 (default); 1: as printed */
+    int erf_literal;  /* 0: the argument of erf in A 2.7 is at least 0 (default); 1: as printed */
 
     mpm_real density;        /* rho0 [mass/length^3], > 0 */
     mpm_real specific_heat;  /* Cp [energy/(mass K)], > 0 where plastic work heats */
@@ -284,8 +284,9 @@ MPM_API void mpm_material_wave_speeds(const mpm_material *m, mpm_real density, m
 
 /* ---- the update, for a block ----------------------------------------------------------------- */
 
-/* The constitutive update (A 3.38 - 3.44, A1 - A11), an mpm_stress_fn: rotation, elastic trial, yield, return to the flow stress, equation of
-   state with implicit energy, adiabatic heating, plastic work.
+/* The constitutive update (A 3.38 - 3.44, A1 - A11), an mpm_stress_fn: rotation, elastic trial,
+   yield, return to the flow stress, equation of state with implicit energy, adiabatic heating,
+   plastic work.
    material  an mpm_material *, valid under mpm_material_check; its counters are written, so two
              threads need two copies
    Returns MPM_OK; MPM_CLAMPED if a shear modulus was bounded; MPM_NOT_CONVERGED if a return ended
@@ -355,6 +356,34 @@ static inline mpm_status mpm__ptw_fail(mpm_fault *fault, mpm_status status, cons
     }
     return status;
 }
+
+/* The fault of a parameter that is out of range, or no number. */
+static inline mpm_status mpm__ptw_refuse(const char *field, mpm_real value, mpm_fault *fault)
+{
+    return mpm__ptw_fail(fault, mpm__ptw_finite(value) ? MPM_ERR_ARGUMENT : MPM_ERR_NAN, field,
+                         value, -1);
+}
+
+/* low <= value <= high (inclusive; finite), or a fault that names the field. */
+static inline mpm_status mpm__ptw_within(const char *field, mpm_real value, mpm_real low,
+                                         mpm_real high, mpm_fault *fault)
+{
+    if (value >= low && value <= high && mpm__ptw_finite(value)) return MPM_OK;
+    return mpm__ptw_refuse(field, value, fault);
+}
+
+static inline mpm_status mpm__ptw_positive(const char *field, mpm_real value, mpm_fault *fault)
+{
+    if (value > 0 && mpm__ptw_finite(value)) return MPM_OK;
+    return mpm__ptw_refuse(field, value, fault);
+}
+
+/* Returns from the calling check at its first fault. */
+#define MPM__PTW_REQUIRE(check)          \
+    do {                                 \
+        mpm_status require_ = (check);   \
+        if (require_ < 0) return require_; \
+    } while (0)
 
 /* ---- what the laws share ------------------------------------------------------------------- */
 
@@ -656,8 +685,8 @@ static inline mpm_flow mpm__ptw_flow_linear(const mpm_material *m, const mpm__pt
     return f;
 }
 
-/* With n < 1 the printed law starts with an infinite slope; the slope (only) is therefore taken no
-   closer to zero strain than the elastic strain at first yield, a/(3 mu). */
+/* With n < 1 the printed law starts with an infinite slope; at zero strain the slope (only) is
+   therefore taken at the elastic strain of first yield, a/(3 mu). */
 static inline mpm_flow mpm__ptw_flow_jc(const mpm_material *m, const mpm__ptw_point *p)
 {
     const mpm_jc *c = &m->jc;
@@ -666,7 +695,7 @@ static inline mpm_flow mpm__ptw_flow_jc(const mpm_material *m, const mpm__ptw_po
     mpm_real soft = T_star > 0 ? 1 - mpm__ptw_pow(T_star, c->m) : 1;
     mpm_real hard = c->a + (strain > 0 ? c->b * mpm__ptw_pow(strain, c->n) : 0);
     mpm_real fast = rate > c->rate ? 1 + c->c * mpm__ptw_log(rate / c->rate) : 1;
-    mpm_real from = mpm__ptw_max(strain, c->a / (3 * p->shear));
+    mpm_real from = strain > 0 ? strain : c->a / (3 * p->shear);
     mpm_flow f;
     f.stress = hard * fast * soft;
     f.strain_slope = 0;
@@ -834,11 +863,12 @@ typedef struct mpm__ptw_lanes {
 static inline mpm_status mpm__ptw_diagnose(const mpm_material *m, const mpm_block *b, int i)
 {
     mpm_real volume = b->strain[0][i] + b->strain[1][i] + b->strain[2][i];
-    mpm_real v = m->density / b->density[i], change = v * volume / (1 + volume);
+    mpm_real old;
     int j;
     for (j = 0; j < 6; j++) {
         if (!mpm__ptw_finite(b->strain[j][i]))
-            return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "strain increment of point", b->strain[j][i], i);
+            return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "strain increment of point",
+                                 b->strain[j][i], i);
         if (!mpm__ptw_finite(b->stress[j][i]))
             return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "stress of point", b->stress[j][i], i);
         if (j < 3 && !mpm__ptw_finite(b->spin[j][i]))
@@ -859,10 +889,12 @@ static inline mpm_status mpm__ptw_diagnose(const mpm_material *m, const mpm_bloc
     if (!(b->temperature[i] >= 0))
         return mpm__ptw_fail(b->fault, MPM_ERR_STATE, "temperature of point", b->temperature[i], i);
     if (!(b->plastic_strain[i] >= 0))
-        return mpm__ptw_fail(b->fault, MPM_ERR_STATE, "plastic strain of point", b->plastic_strain[i], i);
+        return mpm__ptw_fail(b->fault, MPM_ERR_STATE, "plastic strain of point",
+                             b->plastic_strain[i], i);
     if (!(volume > -1))
         return mpm__ptw_fail(b->fault, MPM_ERR_STATE, "volume increment of point", volume, i);
-    if (m->eos == MPM_EOS_MIE_GRUENEISEN && !(1 + m->gruneisen * change / 2 > 0))
+    old = b->density[i] * (1 + volume);
+    if (m->eos == MPM_EOS_MIE_GRUENEISEN && !(old + m->gruneisen / 2 * m->density * volume > 0))
         return mpm__ptw_fail(b->fault, MPM_ERR_STATE, "volume increment of point", volume, i);
     return MPM_OK;
 }
@@ -1013,7 +1045,8 @@ typedef struct mpm__ptw_bounds {
 static inline mpm__ptw_bounds mpm__ptw_bound(const mpm_material *m)
 {
     const mpm_real safe = 1 - 64 * MPM_EPSILON;
-    int concave = m->mapping == MPM_RETURN_CONSISTENT && !(m->strength == MPM_STRENGTH_SCG && m->scg.n > 1);
+    int concave = m->mapping == MPM_RETURN_CONSISTENT &&
+                  !(m->strength == MPM_STRENGTH_SCG && m->scg.n > 1);
     mpm__ptw_levels v;
     mpm__ptw_point p;
     mpm__ptw_bounds bounds;
@@ -1051,8 +1084,11 @@ typedef struct mpm__ptw_search {
     mpm_real mises;      /* trial von Mises stress */
     mpm_real strain;     /* plastic strain at level k */
     mpm_real d;          /* the increment: next to be tried, then the answer */
+    mpm_real least;      /* the smallest increment that counts */
     mpm_real low, high;  /* bracket of d */
-    int yields;          /* whether the static flow stress is known to be exceeded */
+    mpm_real step;       /* the last change of d; more than high before the first */
+    mpm_real slope;      /* d flow stress / d d at the last d */
+    int yields;          /* whether the flow stress at least is known to be exceeded */
     int lane;            /* whose search it is */
 } mpm__ptw_search;
 
@@ -1074,48 +1110,89 @@ enum { MPM__PTW_ITERATIONS = 100 };
 
 /* The consistent return: the increment d that solves
        mises - 3 mu d = sigma_y(eps + d, d/dt, T),
-   or 0 if the static flow stress is not reached. The left side falls and the right side rises, so
-   the root is bracketed by 0 and mises/(3 mu); steps are kept inside the bracket, which shrinks
-   around the root. The search starts from the rate of the last step: if the residual is positive
-   there, the point yields, and the static stress need not be looked at.
+   or 0 if the trial stress does not exceed the flow stress at `least`, the smallest increment that
+   is not lost in the rounding of the elastic strain mises/(3 mu). (At least, not at 0: some metals'
+   flow stress falls without end as the rate goes to 0, and creep of 1e-20 per step is no flow.)
+   The left side falls and the right side rises, so the root is bracketed by least and mises/(3 mu).
+   The bracket shrinks around it; a step that would leave the bracket, or is not half as long as the
+   one before, becomes a bisection. The search starts from the rate of the last step: if the
+   residual is positive there, the point yields, and the flow stress at least need not be looked at.
    Flow stress grows with the logarithm of the rate, so Newton's step is corrected with the second
-   derivative of S ln d (Halley). Of a relative step x it leaves less than (S + 2 H d) x^2/4, H the
+   derivative of S ln d (Halley). Of a relative step x it leaves the order of (S + H d) x^2, H the
    hardening slope: once that is within tolerance, the law is not evaluated again. (Where a branch
-   of A 2.7 ends within that last step, the flow law is met to about 1e-6 instead.) */
+   of A 2.7 ends within that last step, the flow law is met to about 1e-6 instead.) A caller's law
+   is always evaluated at its root, for its slopes are not trusted. */
 static inline void mpm__ptw_search_begin(mpm__ptw_search *q, mpm_real mises, mpm_real dt, int lane)
 {
     q->mises = mises;
     q->strain = q->point.state.plastic_strain;
     q->d = q->point.state.plastic_rate * dt;
-    q->low = 0;
     q->high = mises / (3 * q->point.shear);
+    q->low = q->least = MPM_EPSILON * q->high;
+    q->step = mpm__ptw_infinity();
+    q->slope = 0;
     q->yields = 0;
     q->lane = lane;
 }
 
-/* One evaluation of the search (two if the static stress is needed). Returns whether it is over;
-   then q->d is the answer, or NaN if the law gave NaN. */
+/* A better start than the rate of the last step: the old von Mises stress of lane i is the flow
+   stress of that step, so with a guess S of d stress/d ln rate the new increment follows from one
+   linear equation. PTW: S = s1 stress, exact where s0 r^s1 rules; other laws: S = 0. */
+static inline void mpm__ptw_search_guess(const mpm_material *m, const mpm__ptw_lanes *a,
+                                         mpm__ptw_search *q)
+{
+    int i = q->lane;
+    mpm_real n2 = a->rotated[0][i] * a->rotated[0][i] + a->rotated[1][i] * a->rotated[1][i] +
+                  a->rotated[2][i] * a->rotated[2][i];
+    mpm_real t2 = a->rotated[3][i] * a->rotated[3][i] + a->rotated[4][i] * a->rotated[4][i] +
+                  a->rotated[5][i] * a->rotated[5][i];
+    mpm_real old = mpm__ptw_sqrt(MPM_R(1.5) * n2 + 3 * t2);
+    mpm_real S = m->strength == MPM_STRENGTH_PTW ? m->ptw.s1 * old : 0;
+    mpm_real d = q->d * (q->mises - old + S) / (3 * q->point.shear * q->d + S);
+    if (d > q->least && d < q->high) q->d = d;
+}
+
+/* Whether the point yields at all; if so, a first guess of the increment unless there is one. */
+static inline int mpm__ptw_search_yields(const mpm_material *m, const mpm__ptw_shared *h,
+                                         mpm__ptw_search *q, mpm_real per_step)
+{
+    mpm_real stiff = 3 * q->point.shear, least = q->least, over;
+    mpm_flow f = mpm__ptw_flow_at(m, h, q, least, per_step);
+    over = q->mises - stiff * least - f.stress;
+    q->yields = over > 0;
+    q->d = over <= 0 ? 0 : q->step > q->high ? over / (stiff + f.strain_slope) : q->high;
+    if (over != over) q->d = over;
+    return q->yields;
+}
+
+/* Whether the relative step x leaves a residual within `close`, so that no further evaluation is
+   needed: by the curvature S + H d of the law, and by what the slope changed in the step before. */
+static inline int mpm__ptw_is_last(const mpm__ptw_search *q, const mpm_flow *f, mpm_real slope,
+                                   mpm_real x, mpm_real close)
+{
+    int first = q->step > q->high;
+    mpm_real left = (f->rate_slope + f->strain_slope * q->d) * x * x;
+    mpm_real seen = mpm__ptw_abs(slope - q->slope) * (x * q->d) * (x * q->d);
+    return mpm__ptw_abs(x) <= (first ? MPM_R(5e-6) : MPM_R(1e-4)) && left <= close &&
+           (first || seen <= close * q->step);
+}
+
+/* One round of the search. Returns whether it is over; then q->d is the answer, or NaN if the law
+   gave NaN. */
 static inline int mpm__ptw_search_on(const mpm_material *m, const mpm__ptw_shared *h,
                                      mpm__ptw_search *q, mpm_real per_step)
 {
-    mpm_real stiff = 3 * q->point.shear, close = MPM__PTW_TOLERANCE * q->mises, d = q->d;
-    mpm_real residual, inverse, x, left;
+    mpm_real stiff = 3 * q->point.shear, close = MPM__PTW_TOLERANCE * q->mises;
+    mpm_real d, residual, slope, inverse, x;
     mpm_flow f;
     int over;
     if (q->point.state.temperature >= q->point.melt) {
         q->d = q->high; /* no strength: all of the deviator goes */
         return 1;
     }
-    if (!q->yields && !(d > 0)) {
-        f = mpm__ptw_flow_at(m, h, q, 0, per_step);
-        if (q->mises <= f.stress) {
-            q->d = 0;
-            return 1;
-        }
-        q->yields = 1;
-        d = (q->mises - f.stress) / (stiff + f.strain_slope);
-    }
-    if (!(d > q->low && d < q->high)) d = q->low + (q->high - q->low) / 2;
+    if (!q->yields && !(q->d > q->least) && !mpm__ptw_search_yields(m, h, q, per_step)) return 1;
+    if (!(q->d > q->low && q->d <= q->high)) q->d = q->low + (q->high - q->low) / 2;
+    d = q->d;
     f = mpm__ptw_flow_at(m, h, q, d, per_step);
     residual = q->mises - stiff * d - f.stress;
     if (residual > 0) {
@@ -1126,24 +1203,52 @@ static inline int mpm__ptw_search_on(const mpm_material *m, const mpm__ptw_share
     }
     inverse = 1 / ((stiff + f.strain_slope) * d + f.rate_slope);
     x = residual * inverse;
+    slope = f.strain_slope + f.rate_slope / d;
     x /= mpm__ptw_max(1 - x * f.rate_slope * inverse / 2, MPM_R(0.25));
+    over = mpm__ptw_abs(residual) <= close;
+    if (m->strength == MPM_STRENGTH_USER) x = over ? 0 : x;
+    else over = over || mpm__ptw_is_last(q, &f, slope, x, close);
+    over = over || q->high - q->low <= q->least;
+    q->slope = slope;
     q->d = d + x * d;
-    /* A small residual is a root only if d itself is not lost in the tolerance. */
-    left = (f.rate_slope + 2 * f.strain_slope * d) * x * x / 4;
-    over = mpm__ptw_abs(residual) <= close || (mpm__ptw_abs(x) <= MPM_R(1e-4) && left <= close);
-    over = over && (q->yields || stiff * d > close);
-    over = over || (q->yields && q->high - q->low <= MPM_EPSILON * q->mises / stiff);
-    if (over) q->d = mpm__ptw_min(mpm__ptw_max(q->d, q->low), q->high);
+    if (over)
+        q->d = mpm__ptw_min(mpm__ptw_max(q->d, q->low), q->high);
+    else if (2 * mpm__ptw_abs(x * d) > q->step)
+        q->d = q->low + (q->high - q->low) / 2;
+    q->step = mpm__ptw_abs(q->d - d);
+    /* So small an increment that its residual proves nothing: is there any flow? */
+    if (over && !q->yields && !(stiff * d > close)) {
+        q->d = 0;
+        return 0;
+    }
     return over || residual != residual;
 }
 
-/* The staged return A6 - A8: yield at the rate of the last step, one explicit estimate of d, then
-   the flow stress at the strain and rate it gives, which the trial stress may not exceed upwards.
+/* sqrt(2/3 e:e): the effective size of lane i's deviatoric strain increment. */
+static inline mpm_real mpm__ptw_effective(const mpm__ptw_lanes *a, int i)
+{
+    mpm_real n2 = 0, t2 = 0;
+    int j;
+    for (j = 0; j < 3; j++) {
+        n2 += a->strain[j][i] * a->strain[j][i];
+        t2 += a->strain[j + 3][i] * a->strain[j + 3][i];
+    }
+    return mpm__ptw_sqrt((n2 + 2 * t2) * 2 / 3);
+}
+
+/* The staged return A6 - A8: one explicit estimate of d from the flow stress of level k, then the
+   flow stress at the strain and rate it gives, which may not exceed the trial stress. The flow
+   stress of level k is taken at the rate of the last step or, where nothing flowed then, at the
+   rate `total` of the whole deviatoric strain: taken at rate 0, points on their way to yield would
+   flow again and again, the more often the smaller the step. Even so the scheme loses its way when
+   3 mu d is small against the rate's share of the flow stress (test 11_update "staged").
    Sets q->d and returns the stress returned to. */
 static inline mpm_real mpm__ptw_stage(const mpm_material *m, const mpm__ptw_shared *h,
-                                      mpm__ptw_search *q, mpm_real per_step)
+                                      mpm__ptw_search *q, mpm_real total, mpm_real per_step)
 {
-    mpm_flow f = mpm__ptw_flow(m, h, &q->point);
+    mpm_flow f;
+    if (!(q->point.state.plastic_rate > 0)) q->point.state.plastic_rate = total;
+    f = mpm__ptw_flow(m, h, &q->point);
     q->d = 0;
     if (q->mises <= f.stress) return q->mises;
     q->d = (q->mises - f.stress) / (3 * q->point.shear + f.strain_slope);
@@ -1225,9 +1330,12 @@ static inline mpm_status mpm__ptw_yield(mpm_material *m, const mpm__ptw_shared *
         s.pressure = -a->mean[list[i]];
         search[i].point = mpm__ptw_prepare(m, h, &s, a->shear[list[i]]);
         mpm__ptw_search_begin(&search[i], mpm__ptw_sqrt(a->mises2[list[i]]), b->dt, list[i]);
+        if (search[i].d > search[i].least) mpm__ptw_search_guess(m, a, &search[i]);
     }
     if (m->mapping == MPM_RETURN_STAGED)
-        for (i = 0; i < n; i++) flow[i] = mpm__ptw_stage(m, h, &search[i], per_step);
+        for (i = 0; i < n; i++)
+            flow[i] = mpm__ptw_stage(m, h, &search[i], mpm__ptw_effective(a, list[i]) * per_step,
+                                     per_step);
     else
         capped = mpm__ptw_search_all(m, h, search, n, per_step);
     for (i = 0; i < n; i++) {
@@ -1451,7 +1559,7 @@ static inline const void *mpm__ptw_find(const void *table, size_t size, size_t c
     return NULL;
 }
 
-/* The SI value of one stress unit and so on, applied: value in SI -> value in the system. */
+/* A stress in Pa, in the caller's units. */
 static inline mpm_real mpm__ptw_stress_in(const mpm_units *u, double si)
 {
     return (mpm_real)(si / mpm_units_stress(u));
@@ -1468,7 +1576,8 @@ static inline void mpm__ptw_use_textbook(mpm_material *m, const mpm_units *u, do
     m->shear_modulus = mpm__ptw_stress_in(u, young / (2 * (1 + nu)));
 }
 
-static inline void mpm__ptw_use_shear_scg(mpm_material *m, const mpm_units *u, const mpm__ptw_set_scg *t)
+static inline void mpm__ptw_use_shear_scg(mpm_material *m, const mpm_units *u,
+                                          const mpm__ptw_set_scg *t)
 {
     m->shear = MPM_SHEAR_SCG;
     m->shear_modulus = mpm__ptw_stress_in(u, t->shear);
@@ -1551,7 +1660,8 @@ static inline void mpm__ptw_moduli(const mpm__ptw_metal *t, double *young, doubl
 static inline mpm_status mpm__ptw_use(mpm_material *m, const mpm__ptw_metal *t, const char *model,
                                       mpm_fault *fault)
 {
-    const mpm__ptw_set_linear *linear = MPM__PTW_FIND(mpm__ptw_set_linear, mpm__ptw_sets_linear, t->name);
+    const mpm__ptw_set_linear *linear =
+        MPM__PTW_FIND(mpm__ptw_set_linear, mpm__ptw_sets_linear, t->name);
     const mpm__ptw_set_jc *jc = MPM__PTW_FIND(mpm__ptw_set_jc, mpm__ptw_sets_jc, t->name);
     const mpm__ptw_set_scg *scg = MPM__PTW_FIND(mpm__ptw_set_scg, mpm__ptw_sets_scg, t->name);
     const mpm__ptw_set_ptw *ptw = MPM__PTW_FIND(mpm__ptw_set_ptw, mpm__ptw_sets_ptw, t->name);
@@ -1606,9 +1716,9 @@ MPM_API mpm_status mpm_material_preset(mpm_material *m, const char *name, const 
     mpm_material next = mpm_material_default();
     mpm_status status;
     if (!t) return mpm__ptw_fail(fault, MPM_ERR_UNKNOWN, "material", 0, -1);
-    if (!(units->length > 0)) return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "units.length", (mpm_real)units->length, -1);
-    if (!(units->mass > 0)) return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "units.mass", (mpm_real)units->mass, -1);
-    if (!(units->time > 0)) return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "units.time", (mpm_real)units->time, -1);
+    MPM__PTW_REQUIRE(mpm__ptw_positive("units.length", (mpm_real)units->length, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_positive("units.mass", (mpm_real)units->mass, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_positive("units.time", (mpm_real)units->time, fault));
     next.name = t->name;
     next.units = *units;
     next.density = (mpm_real)(t->density / mpm_units_density(units));
@@ -1639,27 +1749,6 @@ MPM_API const char *mpm_material_preset_name(int i)
 }
 
 /* ---- the check ----------------------------------------------------------------------------- */
-
-/* low <= value <= high (inclusive; finite), or a fault that names the field. */
-static inline mpm_status mpm__ptw_within(const char *field, mpm_real value, mpm_real low, mpm_real high,
-                                         mpm_fault *fault)
-{
-    if (value >= low && value <= high && mpm__ptw_finite(value)) return MPM_OK;
-    return mpm__ptw_fail(fault, mpm__ptw_finite(value) ? MPM_ERR_ARGUMENT : MPM_ERR_NAN, field, value, -1);
-}
-
-static inline mpm_status mpm__ptw_positive(const char *field, mpm_real value, mpm_fault *fault)
-{
-    if (value > 0 && mpm__ptw_finite(value)) return MPM_OK;
-    return mpm__ptw_fail(fault, mpm__ptw_finite(value) ? MPM_ERR_ARGUMENT : MPM_ERR_NAN, field, value, -1);
-}
-
-/* Returns from the calling check at its first fault. */
-#define MPM__PTW_REQUIRE(check)          \
-    do {                                 \
-        mpm_status require_ = (check);   \
-        if (require_ < 0) return require_; \
-    } while (0)
 
 static inline mpm_status mpm__ptw_check_ptw(const mpm_ptw *c, mpm_fault *fault)
 {

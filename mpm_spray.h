@@ -56,7 +56,7 @@
 
    Equation numbers "B n" are those of source B, Mukherjee and Zohdi, A discrete element based
    simulation framework to investigate particulate spray deposition processes (2015). Where its
-   text is open or misprinted the code says what was done instead; the list is in docs/spray.md. */
+   text is open or misprinted the code says what was done instead; the list is in docs/spray_model.md. */
 #ifndef MPM_SPRAY_H
 #define MPM_SPRAY_H
 
@@ -329,7 +329,7 @@ typedef struct mpm_spray {
     int owns_memory;
 } mpm_spray;
 
-/* The paper's Table 1 and 5.1, with the open points as docs/spray.md settles them. capacity is
+/* The paper's Table 1 and 5.1, with the open points as docs/spray_model.md settles them. capacity is
    50 100, enough for the 50 050 particles of the paper's Fig. 6. Test: 50_spray. */
 MPM_API mpm_spray_desc mpm_spray_desc_default(void);
 
@@ -1002,12 +1002,13 @@ static inline mpm_status mpm__spray_check_domain(const mpm_spray_desc *d, mpm_fa
 
 static inline mpm_status mpm__spray_check_numbers(const mpm_spray_desc *d, mpm_fault *f)
 {
-    mpm__spray_rule r[11];
+    mpm__spray_rule r[12];
     /* The swept test takes the path of a step as straight: it must be short against the jet. */
     mpm_real fastest = mpm__spray_max(d->gas == MPM_SPRAY_GAS_STILL ? 0 : (mpm_real)fabs((double)d->gas_speed),
                                       d->release[1]);
     int n = 0;
     r[n++] = mpm__spray_rule_of("dt", d->dt, d->dt > 0 && d->dt * fastest <= d->nozzle_radius);
+    r[n++] = mpm__spray_rule_of("feed", d->feed, d->batch == 0 || d->feed * d->dt < MPM_R(1e9)); /* a step's */
     r[n++] = mpm__spray_rule_of("theta", d->theta, d->theta >= 0 && d->theta <= 1);
     r[n++] = mpm__spray_rule_of("tolerance", d->tolerance, d->tolerance > 0);
     r[n++] = mpm__spray_rule_of("iterations", (mpm_real)d->iterations, d->iterations > 0);

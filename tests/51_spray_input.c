@@ -49,6 +49,7 @@ static void test_values(void)
     WRONG(nozzle_radius, 0);
     WRONG(feed, 0);
     WRONG(feed, -5);
+    WRONG(feed, MPM_R(1e20));
     WRONG(batch, -1);
     WRONG(release[0], -1);
     WRONG(release[1], -1);

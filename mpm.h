@@ -953,7 +953,7 @@ static inline size_t mpm__layout_work(mpm_world *w, char *base, int32_t nodes)
 /* A first guess of the slots needed; mpm_body_add corrects it where it may. */
 static inline int32_t mpm__guess_nodes(const mpm_desc *d)
 {
-    return d->nodes ? d->nodes : d->points / 8 + 256;
+    return d->nodes ? d->nodes : d->points / 10 + 256;
 }
 
 MPM_API size_t mpm_bytes(const mpm_desc *d)

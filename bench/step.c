@@ -19,7 +19,6 @@ int main(void)
     long n, sweeps = 0;
     impact s;
     int i;
-    c.time = 20; /* the violent part */
     if (!impact_begin(&s, &c, message, sizeof message)) {
         fprintf(stderr, "error: %s\n", message);
         return 1;
@@ -60,7 +59,7 @@ int main(void)
     }
     for (i = 0; i < PHASES; i++) whole += spent[i];
     sweep /= (double)sweeps * (double)s.world.points.count;
-    printf("default impact, first %.0f ns: %ld steps of %d points (checksum %.3g)\n", c.time, n, s.world.points.count, sum);
+    printf("default impact, %.0f ns: %ld steps of %d points (checksum %.3g)\n", c.time, n, s.world.points.count, sum);
     for (i = 0; i < PHASES; i++)
         printf("  %-18s %7.2f ns per point-step  %5.1f %%\n", names[i],
                1e9 * spent[i] / ((double)n * s.world.points.count), 100 * spent[i] / whole);

@@ -72,5 +72,18 @@ printf '#include "mpm.h"\nint other(mpm_world *w);\nint other(mpm_world *w) { re
 $1 -std=c99 -I. -c "$dir/whole.c" -o "$dir/whole.o"
 $1 -std=c99 -I. -DMPM_FLOAT -c "$dir/user.c" -o "$dir/user.o"
 check "double and float units do not link" sh -c "! $1 '$dir/whole.o' '$dir/user.o' -o '$dir/mixed' -lm"
+# The same small impact by every compiler and level: equal but for accumulated round-off.
+agree() { # two files of numbers, line by line
+    paste "$1" "$2" | awk '{ d = $1 - $2; if (d < 0) d = -d; s = $1 < 0 ? -$1 : $1; if (d > 1e-7 * s) bad = 1 } END { exit bad || !NR }'
+}
+for cc in gcc clang; do
+    command -v $cc >/dev/null || continue
+    for level in -O0 -O2; do
+        $cc -std=c99 -I. -Itests $level -ffp-contract=off tests/compile/agree.c -o "$dir/agree" -lm &&
+            "$dir/agree" >"$dir/agree_$cc$level"
+        [ -f "$dir/agree_first" ] || cp "$dir/agree_$cc$level" "$dir/agree_first"
+        check "an impact by $cc $level agrees with the first" agree "$dir/agree_first" "$dir/agree_$cc$level"
+    done
+done
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -3,6 +3,7 @@
 #   make run        the main job: an aluminium particle hits an aluminium plate at 810 m/s
 #   make test       every test, double and float, and the compile tests
 #   make bench      speed, as ratios measured in one run
+#   make spray-study   source B's results again: 40 minutes, resumable; BUDGET=quick: four
 #   make clean
 
 # Contraction off: the same source gives the same bits with and without fused multiply-add.
@@ -46,7 +47,12 @@ build/bench/%: bench/%.c $(HEADERS)
 	@mkdir -p build/bench
 	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $< -o $@ $(LDFLAGS) -lm
 
+# Writes docs/spray.md and docs/data; finished runs are kept in build/spray_study.log.
+BUDGET ?= full
+spray-study: build/spray_study
+	build/spray_study --budget $(BUDGET)
+
 clean:
 	rm -rf build
 
-.PHONY: all run test bench clean
+.PHONY: all run test bench spray-study clean

@@ -217,6 +217,8 @@ typedef struct mpm_shape {
     mpm_real half[3];
 } mpm_shape;
 
+/* Shapes from centre and half axes, or from corners [length]. Nothing is checked here: mpm_body_add
+   refuses what is not positive or not finite. Test: 21_world. */
 MPM_API mpm_shape mpm_sphere(mpm_real x, mpm_real y, mpm_real z, mpm_real radius);
 MPM_API mpm_shape mpm_ellipsoid(mpm_real x, mpm_real y, mpm_real z, mpm_real a, mpm_real b, mpm_real c);
 MPM_API mpm_shape mpm_cylinder(mpm_real x, mpm_real y, mpm_real z_bottom, mpm_real radius, mpm_real height);
@@ -272,7 +274,8 @@ typedef struct mpm_desc {
     mpm_normal_rule normal;
     mpm_real friction;       /* Coulomb coefficient between bodies, >= 0 */
     mpm_real gravity[3];     /* [length/time^2] */
-    mpm_real mass_cutoff;    /* nodes lighter than this share of a mean point's mass are passed over; 0 */
+    mpm_real mass_cutoff;    /* nodes lighter than this share of a mean point's mass are passed over:
+                                beyond it lie numbers too small to divide by (GIMP's outermost nodes) */
     int32_t points;          /* capacity, all bodies; see mpm_shape_count */
     int32_t bodies;          /* capacity */
     int32_t nodes;           /* capacity of (node, body) pairs; 0: estimated */
@@ -466,7 +469,9 @@ MPM_API mpm_real mpm_time_step(const mpm_world *w, mpm_real factor);
 
 /* ---- the step, phase by phase -------------------------------------------------------------- */
 
-/* One step: the phases below in their order. Write your own loop to put something between them. */
+/* One step of dt [time] > 0: the phases below in their order. Write your own loop to put something
+   between them. Returns what mpm_locate or mpm_stress return: MPM_OK, MPM_RETIRED; MPM_ERR_FULL and
+   MPM_ERR_NAN before anything changed; MPM_ERR_STATE with the step incomplete. Test: 20_method. */
 MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt);
 
 /* Finds each point's base node, retires points outside the grid, restores cell order when it has
@@ -676,6 +681,8 @@ MPM_API mpm_shape mpm_ellipsoid(mpm_real x, mpm_real y, mpm_real z, mpm_real a, 
     return s;
 }
 
+/* Shapes from centre and half axes, or from corners [length]. Nothing is checked here: mpm_body_add
+   refuses what is not positive or not finite. Test: 21_world. */
 MPM_API mpm_shape mpm_sphere(mpm_real x, mpm_real y, mpm_real z, mpm_real radius)
 {
     return mpm_ellipsoid(x, y, z, radius, radius, radius);
@@ -822,6 +829,7 @@ MPM_API mpm_desc mpm_desc_default(void)
     mpm_desc d;
     memset(&d, 0, sizeof d);
     d.cells[0] = d.cells[1] = d.cells[2] = 1;
+    d.mass_cutoff = MPM_EPSILON * MPM_EPSILON;
     return d;
 }
 
@@ -1152,16 +1160,16 @@ static inline int32_t mpm__body_at(const mpm_world *w, const mpm_real *x)
     return -1;
 }
 
-/* 1 if x lies in the grid. */
-static inline int mpm__in_grid(const mpm_desc *d, const mpm_real *x)
+/* The first axis along which x lies outside the grid, or -1. */
+static inline int mpm__axis_outside(const mpm_desc *d, const mpm_real *x)
 {
     int a;
     for (a = 0; a < 3; a++) {
         mpm_real t = (x[a] - d->origin[a]) * (1 / d->cell);
         if (a == 1 && mpm__flat(d)) continue;
-        if (!(t >= 0 && t < (mpm_real)d->cells[a])) return 0;
+        if (!(t >= 0 && t < (mpm_real)d->cells[a])) return a;
     }
-    return 1;
+    return -1;
 }
 
 /* Writes the points of b behind those in the world, without counting them in. */
@@ -1176,9 +1184,9 @@ static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
     int a, flat = mpm__flat(&w->desc);
     while (mpm__lattice_next(&l, &w->desc, &d->shape, x)) {
         if (i >= p->capacity) return mpm__fail(f, MPM_ERR_FULL, "points", (mpm_real)p->capacity, -1);
-        for (a = 0; a < 3; a++)
-            if (!mpm__in_grid(&w->desc, x))
-                return mpm__fail(f, MPM_ERR_OUTSIDE, "point of body outside the grid: x, y or z", x[a], w->bodies);
+        if ((a = mpm__axis_outside(&w->desc, x)) >= 0)
+            return mpm__fail(f, MPM_ERR_OUTSIDE, a == 0 ? "x of a point" : a == 1 ? "y of a point" : "z of a point",
+                             x[a], w->bodies);
         if ((other = mpm__body_at(w, x)) >= 0)
             return mpm__fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
         for (a = 0; a < w->fields; a++) w->field[(size_t)a * w->stride + (size_t)i] = 0;

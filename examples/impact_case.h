@@ -20,7 +20,8 @@ typedef struct impact_case {
     double time, dt_factor;                        /* ns; of the critical step of a 0.5 um cell */
     double gc, gdot, floor;                        /* J/m2, J/m2/us, 1 */
     double friction;
-    double gap, margin, offset;                    /* um: start distance; free grid around; shift of the grid */
+    double gap, offset;                            /* um: start distance; shift of the grid */
+    double margin;                                 /* free grid around the bodies, particle diameters */
     const char *bond, *symmetry, *material, *geometry, *functions, *plasticity, *normal;
 } impact_case;
 
@@ -39,7 +40,7 @@ static inline impact_case impact_case_default(void)
     c.gc = 1503.74;
     c.gdot = 2.271e5;
     c.floor = 0.05;
-    c.margin = -1;
+    c.margin = 1;
     c.bond = "energy";
     c.symmetry = "quarter";
     c.material = "al";
@@ -130,7 +131,7 @@ static inline int impact_check(const impact_case *c, char *m, size_t n)
    bodies on the free sides, where ejected material flies. */
 static inline mpm_desc impact_grid(const impact_case *c)
 {
-    const double margin = c->margin >= 0 ? c->margin : c->diameter;
+    const double margin = c->margin * c->diameter;
     const double radius = (c->substrate_diameter > c->diameter ? c->substrate_diameter : c->diameter) / 2 + margin;
     const double shift = c->offset - c->cell * floor(c->offset / c->cell);
     const int32_t side = (int32_t)ceil(radius / c->cell - 1e-9);

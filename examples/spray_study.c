@@ -3,8 +3,8 @@
    The paper shows its results as figures only, so trends are compared, not numbers; where its text
    is open, several readings are tried. Every finished run is a line of LOG: a study that was cut
    off goes on where it stopped. Ends with tables and pictures in --data and the section --report,
-   paper and result side by side. Budget "quick": about four minutes, one seed, runs too short for
-   more than a look; "full": about 40 minutes on one core, three seeds where scatter matters.
+   paper and result side by side. Budget "quick": a few minutes, one seed, runs too short for
+   more than a look; "full": about a quarter of an hour on one core, three seeds where scatter matters.
    SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "mpm_spray.h"

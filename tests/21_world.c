@@ -65,6 +65,7 @@ static void bad_bodies(void)
     CHECK_EQUAL("negative radius", mpm_body_add(&w, &b), MPM_ERR_ARGUMENT);
     b.shape = mpm_sphere(9, 3, 3, 2);
     CHECK_EQUAL("outside the grid", mpm_body_add(&w, &b), MPM_ERR_OUTSIDE);
+    CHECK_TRUE("... names the axis", !strcmp(w.fault.field, "x of a point") && w.fault.value >= 10);
     CHECK_EQUAL("the world is unchanged", w.points.count + w.bodies, 0);
     CHECK_EQUAL("a good one", mpm_body_add(&w, &good), MPM_OK);
     b.shape = mpm_box(4, 2, 2, 6, 4, 4);

@@ -69,6 +69,7 @@ int main(void)
     refused("--cell 0", "0");
     refused("--spacing 2", "2");
     refused("--gap -3", "overlap");
+    refused("--margin -0.6", "outside");
     refused("--material unobtainium", "unobtainium");
     refused("--nonsense 1", "--nonsense");
     CHECK_TRUE("unwritable folder", run("--time 1 --out /proc/none") != 0);

@@ -1,0 +1,211 @@
+/* 22_sides - gravity, the sides of the grid and the geometries, against what must come out.
+   SPDX-License-Identifier: MIT */
+#define MPM_IMPLEMENTATION
+#include "scene.h"
+#include "check.h"
+
+static const double eps = (double)MPM_EPSILON;
+
+/* Free fall: v = g t, and the work of gravity is the kinetic energy gained. */
+static void gravity(void)
+{
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(1, 8, 8, 16, 0, 0, 0);
+    mpm_body_desc b = scene_body(&m, mpm_sphere(4, 4, 10, 2), 0.5, 0);
+    mpm_totals t;
+    mpm_world w;
+    int n;
+    d.gravity[2] = -1000;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &b);
+    for (n = 0; n < 200; n++) mpm_step(&w, MPM_R(2e-4));
+    t = mpm_body_totals(&w, -1);
+    CHECK_RELATIVE("free fall: velocity", t.momentum[2] / t.mass, -1000 * 200 * 2e-4, 1e3 * eps);
+    CHECK_RELATIVE("free fall: momentum in the ledger", w.ledger.impulse[2], t.momentum[2], 1e3 * eps);
+    CHECK_RELATIVE("free fall: work in the ledger", w.ledger.gravity, t.kinetic, 1e3 * eps);
+    mpm_free(&w);
+}
+
+/* An elastic column between sliding walls, thrown at the lower side. On a rigid wall it lets go after
+   2 L / c with its velocity reversed; nodal impact takes a share that falls with the cell (12, 7, 4,
+   2.6, 1.6 % of the velocity for 8, 16, 32, 64, 128 cells). Returns its mean velocity afterwards over
+   before. */
+static double throw_at(mpm_side side, double cell, double *momentum, double *energy)
+{
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(cell, 2, 2, (int)(24 / cell), 0, 0, 0);
+    const mpm_real width = (mpm_real)(2 * cell);
+    mpm_body_desc b = scene_body(&m, mpm_box(0, 0, 0, width, width, 16), cell / 2, -20);
+    mpm_totals t0, t;
+    mpm_world w;
+    double r;
+    int n;
+    d.side[0] = d.side[1] = d.side[2] = d.side[3] = MPM_SIDE_SYMMETRY;
+    d.side[4] = side;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &b);
+    t0 = mpm_body_totals(&w, -1);
+    for (n = 0; n < 3000; n++) mpm_step(&w, MPM_R(1e-5)); /* it flies 0.6 um at 20 m/s */
+    t = mpm_body_totals(&w, -1);
+    *momentum = (t.momentum[2] - t0.momentum[2] - w.ledger.impulse[2]) / t0.momentum[2];
+    *energy = (t.kinetic + t.internal + w.ledger.walls - t0.kinetic) / t0.kinetic;
+    r = t.low[2] > 0.5 ? t.momentum[2] / t0.momentum[2] : 0; /* 0: it has not left */
+    mpm_free(&w);
+    return r;
+}
+
+static void sides(void)
+{
+    double p, e, r = throw_at(MPM_SIDE_WALL, 1, &p, &e), fine;
+    CHECK_NEAR("wall: an elastic column of 16 cells bounces off with its velocity", r, -1, 0.08);
+    CHECK_NEAR("wall: momentum", p, 0, 5e3 * eps);
+    CHECK_NEAR("wall: energy with the wall's loss counted", e, 0, 0.01);
+    fine = throw_at(MPM_SIDE_WALL, 0.5, &p, &e);
+    CHECK_TRUE("wall: of 32 cells, nearly twice as well", 1 + fine < 0.65 * (1 + r));
+    r = throw_at(MPM_SIDE_SYMMETRY, 1, &p, &e);
+    CHECK_NEAR("symmetry plane: it does not let go", r, 0, 0);
+    CHECK_NEAR("symmetry plane: momentum", p, 0, 5e3 * eps);
+    r = throw_at(MPM_SIDE_FIXED, 1, &p, &e);
+    CHECK_NEAR("fixed side: it does not let go", r, 0, 0);
+    CHECK_NEAR("fixed side: momentum", p, 0, 5e3 * eps);
+    r = throw_at(MPM_SIDE_OPEN, 1, &p, &e);
+    CHECK_NEAR("open side: momentum, nothing acts", p, 0, 5e3 * eps);
+}
+
+/* A block pressed on a wall by gravity slides to v0 - mu g t. */
+static void sliding(double mu)
+{
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(1, 16, 8, 6, 0, 0, 0);
+    mpm_body_desc b = scene_body(&m, mpm_box(2, 2, 0, 6, 6, 2), 0.5, 0);
+    const double g = 2000, dt = 2e-5, time = 0.02;
+    mpm_totals t;
+    mpm_world w;
+    char line[100];
+    d.side[4] = MPM_SIDE_WALL;
+    d.wall_friction = (mpm_real)mu;
+    d.gravity[2] = (mpm_real)-g;
+    b.velocity[0] = 100;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &b);
+    while (w.steps < (long)(time / dt)) mpm_step(&w, (mpm_real)dt);
+    t = mpm_body_totals(&w, -1);
+    snprintf(line, sizeof line, "sliding on a wall, mu = %g: velocity lost", mu);
+    CHECK_NEAR(line, 100 - t.momentum[0] / t.mass, mu * g * time, 0.02 * g * time * mu + 1e4 * eps);
+    mpm_free(&w);
+}
+
+/* One block sliding on another, held at its lower side: Coulomb friction between bodies. */
+static void friction(double mu)
+{
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(1, 18, 8, 8, 0, 0, 0);
+    mpm_body_desc top = scene_body(&m, mpm_box(2, 2, 2, 6, 6, 4), 0.5, 0);
+    mpm_body_desc low = scene_body(&m, mpm_box(1, 1, 0, 16, 7, 2), 0.5, 0);
+    const double g = 2000, dt = 2e-5, time = 0.02;
+    mpm_totals t;
+    mpm_world w;
+    char line[100];
+    d.side[4] = MPM_SIDE_FIXED;
+    d.friction = (mpm_real)mu;
+    d.gravity[2] = (mpm_real)-g;
+    top.velocity[0] = 100;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &top);
+    mpm_body_add(&w, &low);
+    while (w.steps < (long)(time / dt)) mpm_step(&w, (mpm_real)dt);
+    t = mpm_body_totals(&w, 0);
+    snprintf(line, sizeof line, "sliding on a body, mu = %g: velocity lost", mu);
+    CHECK_NEAR(line, 100 - t.momentum[0] / t.mass, mu * g * time, 0.05 * g * time * 0.3);
+    mpm_free(&w);
+}
+
+/* A quarter behind two symmetry planes is a quarter of the whole, mirrored ghosts included. */
+static void mirrors(mpm_shape_function shape, const char *name)
+{
+    double kinetic[2], internal[2], high[2];
+    char line[100];
+    int full, n;
+    for (full = 0; full < 2; full++) {
+        mpm_material m = scene_metal(0, mpm_units_um_us_ng());
+        mpm_desc d = full ? scene_grid(1, 16, 16, 14, -8, -8, -6) : scene_grid(1, 8, 8, 14, 0, 0, -6);
+        mpm_body_desc ball = scene_body(&m, mpm_sphere(0, 0, 2, 2), 0.5, -500);
+        mpm_body_desc slab = scene_body(&m, mpm_cylinder(0, 0, -3, 5, 3), 0.5, 0);
+        mpm_totals t;
+        mpm_world w;
+        d.shape = shape;
+        if (!full) d.side[0] = d.side[2] = MPM_SIDE_SYMMETRY;
+        slab.absorb = MPM_BOTTOM | MPM_SIDES;
+        mpm_init(&w, &d, NULL, 0);
+        mpm_body_add(&w, &ball);
+        mpm_body_add(&w, &slab);
+        for (n = 0; n < 300; n++)
+            if (scene_step(&w, NULL, MPM_R(1e-5)) < 0) break;
+        t = mpm_body_totals(&w, -1);
+        kinetic[full] = t.kinetic / t.mass;
+        internal[full] = t.internal / t.mass;
+        high[full] = mpm_body_totals(&w, 0).high[0];
+        mpm_free(&w);
+    }
+    snprintf(line, sizeof line, "quarter and whole, %s: kinetic energy", name);
+    CHECK_RELATIVE(line, kinetic[0], kinetic[1], 1e6 * eps * (sizeof(mpm_real) == 4 ? 0.1 : 1));
+    CHECK_RELATIVE("quarter and whole: internal energy", internal[0], internal[1], 1e6 * eps * (sizeof(mpm_real) == 4 ? 0.1 : 1));
+    CHECK_RELATIVE("quarter and whole: radius of the ball", high[0], high[1], 1e6 * eps * (sizeof(mpm_real) == 4 ? 0.1 : 1));
+}
+
+/* Axisymmetry: a velocity a r strains hoop and radius alike, and uniform pressure leaves the nodes
+   inside a body without force (hoop term included). */
+static void rings(mpm_shape_function shape, const char *name)
+{
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(1, 10, 1, 12, 0, 0, 0);
+    mpm_body_desc b = scene_body(&m, mpm_cylinder(0, 0, 2, 6, 8), 0.5, 0);
+    const double rate = 0.001;
+    double worst_volume = 0, worst_force = 0, scale;
+    mpm_world w;
+    int32_t i;
+    char line[100];
+    d.geometry = MPM_AXISYMMETRIC;
+    d.shape = shape;
+    d.side[0] = MPM_SIDE_SYMMETRY;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &b);
+    snprintf(line, sizeof line, "rings, %s: mass is that of the cylinder", name);
+    CHECK_RELATIVE(line, mpm_body_totals(&w, -1).mass, 3.14159265358979 * 36 * 8 * (double)m.density, 100 * eps);
+    for (i = 0; i < w.points.count; i++) w.points.stress[0][i] = w.points.stress[1][i] = w.points.stress[2][i] = -100;
+    mpm_locate(&w);
+    mpm_p2g(&w);
+    mpm_forces(&w, 1);
+    for (i = 0; i < w.nodes; i++) {
+        const int32_t ir = w.node[i].index % w.nodes_per_axis[0] - w.ghost, iz = w.node[i].index / w.nodes_per_axis[0] - w.ghost;
+        w.node[i].velocity[0] = (mpm_real)(rate * ir);
+        scale = 100 * 2 * 3.14159265358979 * (ir > 0 ? ir : 1);
+        if (ir < 1 || ir > 4 || iz < 4 || iz > 8) continue;
+        if (fabs((double)w.node[i].force[0]) / scale > worst_force) worst_force = fabs((double)w.node[i].force[0]) / scale;
+        if (fabs((double)w.node[i].force[2]) / scale > worst_force) worst_force = fabs((double)w.node[i].force[2]) / scale;
+    }
+    if (shape == MPM_LINEAR) CHECK_NEAR("rings: no force inside under uniform pressure", worst_force, 0, 100 * eps);
+    w.body[0].desc.stress = NULL;
+    mpm_stress(&w, 1);
+    for (i = 0; i < w.points.count; i++) {
+        double e = fabs((double)(m.density / w.points.density[i]) - (1 + 2 * rate));
+        if (w.points.x[0][i] < 5 && e > worst_volume) worst_volume = e;
+    }
+    CHECK_NEAR("rings: volume grows by both radial and hoop strain", worst_volume, 0, 50 * eps);
+    mpm_free(&w);
+}
+
+int main(void)
+{
+    gravity();
+    sides();
+    sliding(0);
+    sliding(0.3);
+    friction(0);
+    friction(0.3);
+    mirrors(MPM_LINEAR, "linear");
+    mirrors(MPM_GIMP, "GIMP");
+    rings(MPM_LINEAR, "linear");
+    rings(MPM_GIMP, "GIMP");
+    return check_end();
+}

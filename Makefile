@@ -5,6 +5,7 @@
 #   make bench      speed, as ratios measured in one run
 #   make impacts     the impacts of docs/reproduction.md: bonded, unbonded, whole model (4 minutes)
 #   make spray-study   source B's results again: a quarter of an hour, resumable; BUDGET=quick: less
+#   make verify     the verification ladder again: writes docs/verification.md; resumable, `make -j2 verify`
 #   make clean
 
 # Contraction off: the same source gives the same bits with and without fused multiply-add.
@@ -14,11 +15,12 @@ CFLAGS ?= -O3 $(NATIVE) -ffp-contract=off -fno-math-errno -fno-trapping-math
 TESTFLAGS ?= -O2 -ffp-contract=off
 STRICT  = -std=c99 -pedantic -Wall -Wextra -Wconversion -Wshadow
 INCLUDE = -I. -Iexamples -Itests
-HEADERS = $(wildcard mpm*.h examples/*.h tests/*.h bench/*.h)
+HEADERS = $(wildcard mpm*.h examples/*.h tests/*.h tests/verify/*.h bench/*.h)
 
 EXAMPLES = $(patsubst examples/%.c,build/%,$(wildcard examples/*.c))
 TESTS    = $(patsubst tests/%.c,build/tests/%,$(wildcard tests/[0-9]*.c))
 FLOATS   = $(patsubst tests/%.c,build/tests/%_f32,$(wildcard tests/[0-9]*.c))
+VERIFY   = $(patsubst tests/verify/%.c,build/verify/%.md,$(wildcard tests/verify/*.c))
 BENCH    = $(patsubst bench/%.c,build/bench/%,$(wildcard bench/*.c))
 
 all: $(EXAMPLES) $(TESTS) $(FLOATS) $(BENCH)
@@ -48,6 +50,18 @@ build/bench/%: bench/%.c $(HEADERS)
 	@mkdir -p build/bench
 	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $< -o $@ $(LDFLAGS) -lm
 
+build/verify/%: tests/verify/%.c $(HEADERS)
+	@mkdir -p build/verify
+	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) -Itests/verify $< -o $@ $(LDFLAGS) -lm
+
+# One section of docs/verification.md; finished sections are kept.
+build/verify/%.md: build/verify/%
+	$< >$@.part && mv $@.part $@
+
+verify: $(VERIFY)
+	sh tests/verify/page.sh $(VERIFY) >docs/verification.md
+	@grep -h '^[0-9]* rows' docs/verification.md
+
 # The runs behind docs/reproduction.md and the README, and the numbers quoted there.
 impacts: build/impact
 	build/impact --frames 0 --quiet --out build/bonded
@@ -64,4 +78,7 @@ spray-study: build/spray_study
 clean:
 	rm -rf build
 
-.PHONY: all run test bench impacts spray-study clean
+# sections are programs first: keep them
+.PRECIOUS: build/verify/%
+
+.PHONY: all run test verify bench impacts spray-study clean

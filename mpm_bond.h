@@ -38,6 +38,11 @@
 #define mpm_bond_nodes mpm_bond_nodes_f32
 #define mpm_bond_measure_body mpm_bond_measure_body_f32
 #define mpm_restitution mpm_restitution_f32
+#define mpm_bond_logistic_fit mpm_bond_logistic_fit_f32
+#define mpm_bond_logistic_z mpm_bond_logistic_z_f32
+#define mpm_bond_logistic_theta mpm_bond_logistic_theta_f32
+#define mpm_bond_logistic_roots mpm_bond_logistic_roots_f32
+#define mpm_bond_logistic_cross mpm_bond_logistic_cross_f32
 #endif
 
 #ifdef __cplusplus
@@ -111,6 +116,47 @@ typedef struct mpm_rebound {
 } mpm_rebound;
 
 MPM_API mpm_rebound mpm_restitution(const mpm_world *w, int32_t body, mpm_real filter);
+
+/* ---- calibration ---------------------------------------------------------------------------- */
+
+/* The boundary between two outcomes over two parameters, a second-order logistic regression (A 4.11):
+       Z = t0 + t1 u1 + t2 u2 + t3 u1^2 + t4 u1 u2 + t5 u2^2,   probability of outcome 1 = 1/(1 + e^-Z)
+   (A 4.10, whose print has a minus there), of the scaled parameters u = (x - center)/half in [-1, 1]. The
+   boundary is Z = 0. Everything is double, in MPM_FLOAT too. Pass logarithms for a logarithmic scale. */
+typedef struct mpm_logistic {
+    double theta[6];            /* t0 .. t5 of the scaled parameters */
+    double center[2], half[2];  /* middle and half width of the range of x1 and x2 */
+    double cost;                /* J, mean negative log-likelihood (A 4.13), ridge excluded */
+    long wrong;                 /* tests on the wrong side of the boundary */
+    int iterations;             /* Newton steps taken */
+} mpm_logistic;
+
+/* Fits n tests by maximum likelihood: J + ridge/2 (t1^2 + .. + t5^2) least, by damped Newton steps. Where
+   a boundary separates the outcomes without error the likelihood alone has no maximum at finite theta; a
+   ridge > 0 gives it one (1e-6 hardly moves other fits).
+   x1, x2: parameters, any units. outcome: 0 or 1. n >= 6. ridge >= 0. steps: most iterations, > 0 (50).
+   MPM_NOT_CONVERGED: the steps did not suffice, or, with ridge 0, the outcomes are separable or the points
+   lie on a conic; the fit is the last one. MPM_ERR_ARGUMENT / NAN with the field and the test: n, outcome
+   (also when there is only one: index -1), a parameter that is not finite or the same in all tests.
+   Test: 31_calibration. */
+MPM_API mpm_status mpm_bond_logistic_fit(mpm_logistic *fit, const double *x1, const double *x2, const int *outcome,
+                                         long n, double ridge, int steps, mpm_fault *fault);
+
+/* Z at (x1, x2): positive where outcome 1 is the likelier. */
+MPM_API double mpm_bond_logistic_z(const mpm_logistic *fit, double x1, double x2);
+
+/* theta of the parameters as they were passed (A 4.11), for printing. */
+MPM_API void mpm_bond_logistic_theta(const mpm_logistic *fit, double theta[6]);
+
+/* The boundary at x1: the x2 in [low, high] with Z = 0, ascending. Returns how many: 0, 1 or 2. */
+MPM_API int mpm_bond_logistic_roots(const mpm_logistic *fit, double x1, double low, double high, double root[2]);
+
+/* Where two boundaries cross inside the box low .. high of (x1, x2), low < high. Returns how many points
+   it found, 0 .. 4, ordered by x1. The box is halved until neither boundary can be excluded from a part
+   2^-20 of its width; Newton's method finishes. Boundaries that touch or coincide give up to four points
+   of what they share. 0 also for a box or fit that is not finite. */
+MPM_API int mpm_bond_logistic_cross(const mpm_logistic *a, const mpm_logistic *b, const double low[2],
+                                    const double high[2], double point[4][2]);
 
 #ifdef __cplusplus
 }
@@ -288,6 +334,267 @@ MPM_API mpm_rebound mpm_restitution(const mpm_world *w, int32_t body, mpm_real f
         r.noise = square > 0 ? sqrt(square) : 0;
     }
     return r;
+}
+
+/* ---- calibration ---------------------------------------------------------------------------- */
+
+enum { MPM__TERMS = 6 };
+
+/* The terms of A 4.11 at the scaled point (u1, u2). */
+static inline void mpm__terms(double u1, double u2, double *X)
+{
+    X[0] = 1;
+    X[1] = u1;
+    X[2] = u2;
+    X[3] = u1 * u1;
+    X[4] = u1 * u2;
+    X[5] = u2 * u2;
+}
+
+static inline double mpm__poly(const double *theta, double u1, double u2)
+{
+    return theta[0] + u1 * (theta[1] + theta[3] * u1 + theta[4] * u2) + u2 * (theta[2] + theta[5] * u2);
+}
+
+static inline double mpm__scaled(const mpm_logistic *f, int axis, double x)
+{
+    return (x - f->center[axis]) / f->half[axis];
+}
+
+/* Solves H d = g for a symmetric positive definite H by Cholesky; H is overwritten. 0 if it is not. */
+static inline int mpm__cholesky(double H[MPM__TERMS][MPM__TERMS], const double *g, double *d)
+{
+    int i, j, k;
+    for (j = 0; j < MPM__TERMS; j++) {
+        const double whole = H[j][j];
+        for (k = 0; k < j; k++) H[j][j] -= H[j][k] * H[j][k];
+        if (!(H[j][j] > 1e-14 * whole) || !(whole > 0)) return 0;
+        H[j][j] = sqrt(H[j][j]);
+        for (i = j + 1; i < MPM__TERMS; i++) {
+            for (k = 0; k < j; k++) H[i][j] -= H[i][k] * H[j][k];
+            H[i][j] /= H[j][j];
+        }
+    }
+    for (i = 0; i < MPM__TERMS; i++) {
+        d[i] = g[i];
+        for (k = 0; k < i; k++) d[i] -= H[i][k] * d[k];
+        d[i] /= H[i][i];
+    }
+    for (i = MPM__TERMS - 1; i >= 0; i--) {
+        for (k = i + 1; k < MPM__TERMS; k++) d[i] -= H[k][i] * d[k];
+        d[i] /= H[i][i];
+    }
+    return 1;
+}
+
+/* J (A 4.13), and with gradient g (A 4.14) and Hessian H where asked. Sets fit->cost and fit->wrong. */
+static inline double mpm__logistic_cost(mpm_logistic *f, const double *x1, const double *x2, const int *outcome, long n,
+                                        double ridge, double *g, double (*H)[MPM__TERMS])
+{
+    double X[MPM__TERMS], penalty = 0;
+    long t;
+    int i, j;
+    f->cost = 0;
+    f->wrong = 0;
+    for (i = 0; g && i < MPM__TERMS; i++) {
+        g[i] = i ? ridge * f->theta[i] : 0;
+        for (j = 0; j <= i; j++) H[i][j] = i && i == j ? ridge : 0;
+    }
+    for (t = 0; t < n; t++) {
+        double z, toward, small, h;
+        mpm__terms(mpm__scaled(f, 0, x1[t]), mpm__scaled(f, 1, x2[t]), X);
+        z = mpm__poly(f->theta, X[1], X[2]);
+        toward = outcome[t] ? z : -z;
+        small = exp(-fabs(z)); /* of h = 1/(1 + e^-z), whichever way it does not overflow */
+        h = (z > 0 ? 1 : small) / (1 + small);
+        f->cost += ((toward > 0 ? 0 : -toward) + log(1 + small)) / (double)n;
+        f->wrong += !(toward > 0);
+        for (i = 0; g && i < MPM__TERMS; i++) {
+            g[i] += X[i] * (h - outcome[t]) / (double)n;
+            for (j = 0; j <= i; j++) H[i][j] += X[i] * X[j] * h * (1 - h) / (double)n;
+        }
+    }
+    for (i = 1; i < MPM__TERMS; i++) penalty += ridge / 2 * f->theta[i] * f->theta[i];
+    return f->cost + penalty;
+}
+
+/* The range of a parameter. */
+static inline mpm_status mpm__logistic_scale(mpm_logistic *f, int axis, const double *x, long n, const char *field,
+                                             mpm_fault *fault)
+{
+    double low = x[0], high = x[0];
+    long t;
+    for (t = 0; t < n; t++) {
+        if (!(x[t] - x[t] >= 0)) return mpm__fail(fault, MPM_ERR_NAN, field, (mpm_real)x[t], t); /* inf too */
+        if (x[t] < low) low = x[t];
+        if (x[t] > high) high = x[t];
+    }
+    f->center[axis] = low + (high - low) / 2;
+    f->half[axis] = (high - low) / 2;
+    if (!(f->half[axis] > 0)) return mpm__fail(fault, MPM_ERR_ARGUMENT, field, (mpm_real)low, -1);
+    return MPM_OK;
+}
+
+static inline mpm_status mpm__logistic_check(const int *outcome, long n, double ridge, int steps, mpm_fault *fault)
+{
+    long t, ones = 0;
+    mpm_status s = mpm__want(n >= MPM__TERMS, fault, "logistic n", (mpm_real)n, -1);
+    if (s == MPM_OK) s = mpm__want(ridge >= 0, fault, "logistic ridge", (mpm_real)ridge, -1);
+    if (s == MPM_OK) s = mpm__want(steps > 0, fault, "logistic steps", (mpm_real)steps, -1);
+    if (s != MPM_OK) return s;
+    for (t = 0; t < n; t++) {
+        if (outcome[t] != 0 && outcome[t] != 1)
+            return mpm__fail(fault, MPM_ERR_ARGUMENT, "logistic outcome", (mpm_real)outcome[t], t);
+        ones += outcome[t];
+    }
+    return mpm__want(ones > 0 && ones < n, fault, "logistic outcome", (mpm_real)outcome[0], -1);
+}
+
+MPM_API mpm_status mpm_bond_logistic_fit(mpm_logistic *fit, const double *x1, const double *x2, const int *outcome,
+                                         long n, double ridge, int steps, mpm_fault *fault)
+{
+    double g[MPM__TERMS], d[MPM__TERMS], H[MPM__TERMS][MPM__TERMS], from[MPM__TERMS], now, gain, share;
+    mpm_status s = mpm__logistic_check(outcome, n, ridge, steps, fault);
+    int i;
+    memset(fit, 0, sizeof *fit);
+    if (s == MPM_OK) s = mpm__logistic_scale(fit, 0, x1, n, "logistic x1", fault);
+    if (s == MPM_OK) s = mpm__logistic_scale(fit, 1, x2, n, "logistic x2", fault);
+    if (s != MPM_OK) return s;
+    while (fit->iterations < steps) {
+        now = mpm__logistic_cost(fit, x1, x2, outcome, n, ridge, g, H);
+        if (!mpm__cholesky(H, g, d)) return MPM_NOT_CONVERGED;
+        fit->iterations++;
+        for (gain = 0, i = 0; i < MPM__TERMS; i++) {
+            gain += g[i] * d[i];
+            from[i] = fit->theta[i];
+        }
+        for (share = 1; share > 1e-12; share /= 2) { /* the cost must fall, unless nothing is left to gain */
+            for (i = 0; i < MPM__TERMS; i++) fit->theta[i] = from[i] - share * d[i];
+            if (mpm__logistic_cost(fit, x1, x2, outcome, n, ridge, NULL, NULL) <= now - 1e-4 * share * gain ||
+                gain <= 1e-14 * now)
+                break;
+        }
+        if (gain <= 1e-14 * now) return MPM_OK;
+    }
+    return MPM_NOT_CONVERGED;
+}
+
+MPM_API double mpm_bond_logistic_z(const mpm_logistic *f, double x1, double x2)
+{
+    return mpm__poly(f->theta, mpm__scaled(f, 0, x1), mpm__scaled(f, 1, x2));
+}
+
+/* theta of new parameters w, where x = middle + width * w. */
+static inline void mpm__rescaled(const mpm_logistic *f, const double *middle, const double *width, double *theta)
+{
+    const double *t = f->theta;
+    const double c1 = mpm__scaled(f, 0, middle[0]), c2 = mpm__scaled(f, 1, middle[1]);
+    const double k1 = width[0] / f->half[0], k2 = width[1] / f->half[1];
+    theta[0] = mpm__poly(t, c1, c2);
+    theta[1] = k1 * (t[1] + 2 * t[3] * c1 + t[4] * c2);
+    theta[2] = k2 * (t[2] + t[4] * c1 + 2 * t[5] * c2);
+    theta[3] = k1 * k1 * t[3];
+    theta[4] = k1 * k2 * t[4];
+    theta[5] = k2 * k2 * t[5];
+}
+
+MPM_API void mpm_bond_logistic_theta(const mpm_logistic *f, double theta[6])
+{
+    const double zero[2] = {0, 0}, one[2] = {1, 1};
+    mpm__rescaled(f, zero, one, theta);
+}
+
+MPM_API int mpm_bond_logistic_roots(const mpm_logistic *f, double x1, double low, double high, double root[2])
+{
+    const double *t = f->theta, u = mpm__scaled(f, 0, x1);
+    const double a = t[5], b = t[2] + t[4] * u, c = t[0] + u * (t[1] + t[3] * u);
+    const double square = b * b - 4 * a * c;
+    double q, x;
+    int n = 0;
+    if (!(square >= 0)) return 0;
+    q = -(b + (b < 0 ? -sqrt(square) : sqrt(square))) / 2; /* without cancellation */
+    if (fabs(a) > 0) {
+        x = f->center[1] + f->half[1] * (q / a);
+        if (x >= low && x <= high) root[n++] = x;
+    }
+    if (fabs(q) > 0) {
+        x = f->center[1] + f->half[1] * (c / q);
+        if (x >= low && x <= high && !(n && square <= 0)) root[n++] = x;
+    }
+    if (n == 2 && root[1] < root[0]) {
+        x = root[0];
+        root[0] = root[1];
+        root[1] = x;
+    }
+    return n;
+}
+
+/* Can the polynomial vanish within r of (u, v) in both directions? No by its Taylor terms, exactly. */
+static inline int mpm__may_vanish(const double *t, double u, double v, double r)
+{
+    const double du = t[1] + 2 * t[3] * u + t[4] * v, dv = t[2] + t[4] * u + 2 * t[5] * v;
+    return fabs(mpm__poly(t, u, v)) <= r * (fabs(du) + fabs(dv) + r * (fabs(t[3]) + fabs(t[4]) + fabs(t[5])));
+}
+
+/* Newton's method for both polynomials vanishing; stays put where it leads away by more than `reach`. */
+static inline void mpm__polish(const double *a, const double *b, double reach, double *u, double *v)
+{
+    double x = *u, y = *v;
+    int i;
+    for (i = 0; i < 4; i++) {
+        const double ax = a[1] + 2 * a[3] * x + a[4] * y, ay = a[2] + a[4] * x + 2 * a[5] * y;
+        const double bx = b[1] + 2 * b[3] * x + b[4] * y, by = b[2] + b[4] * x + 2 * b[5] * y;
+        const double fa = mpm__poly(a, x, y), fb = mpm__poly(b, x, y), det = ax * by - ay * bx;
+        x -= (fa * by - fb * ay) / det;
+        y -= (fb * ax - fa * bx) / det;
+    }
+    if (!(fabs(x - *u) <= reach && fabs(y - *v) <= reach)) return;
+    *u = x;
+    *v = y;
+}
+
+/* Crossings in the square of half width r about (u, v); n were found before. Returns how many now. */
+static inline int mpm__crossings(const double *a, const double *b, double u, double v, double r,
+                                 double (*point)[2], int n)
+{
+    int i;
+    if (n == 4 || !mpm__may_vanish(a, u, v, r) || !mpm__may_vanish(b, u, v, r)) return n;
+    if (r > 1e-6) {
+        for (i = 0; i < 4; i++)
+            n = mpm__crossings(a, b, u + (i & 2 ? r : -r) / 2, v + (i & 1 ? r : -r) / 2, r / 2, point, n);
+        return n;
+    }
+    mpm__polish(a, b, 4 * r, &u, &v);
+    for (i = 0; i < n; i++)
+        if (fabs(point[i][0] - u) <= 16 * r && fabs(point[i][1] - v) <= 16 * r) return n;
+    point[n][0] = u;
+    point[n][1] = v;
+    return n + 1;
+}
+
+MPM_API int mpm_bond_logistic_cross(const mpm_logistic *a, const mpm_logistic *b, const double low[2],
+                                    const double high[2], double point[4][2])
+{
+    double middle[2], width[2], ta[MPM__TERMS], tb[MPM__TERMS];
+    int n, i, j;
+    for (i = 0; i < 2; i++) {
+        middle[i] = low[i] + (high[i] - low[i]) / 2;
+        width[i] = (high[i] - low[i]) / 2;
+    }
+    mpm__rescaled(a, middle, width, ta);
+    mpm__rescaled(b, middle, width, tb);
+    n = mpm__crossings(ta, tb, 0, 0, 1, point, 0);
+    for (i = 0; i < n; i++)
+        for (j = 0; j < 2; j++) point[i][j] = middle[j] + width[j] * point[i][j];
+    for (i = 1; i < n; i++)
+        for (j = i; j > 0 && point[j][0] < point[j - 1][0]; j--) {
+            const double x = point[j][0], y = point[j][1];
+            point[j][0] = point[j - 1][0];
+            point[j][1] = point[j - 1][1];
+            point[j - 1][0] = x;
+            point[j - 1][1] = y;
+        }
+    return n;
 }
 
 #ifdef __cplusplus

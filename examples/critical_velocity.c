@@ -1,0 +1,230 @@
+/* critical_velocity - the lowest velocity at which a particle bonds (source A, 5.2.1).
+
+   Runs a range of impact velocities, halves the gap under the lowest one that bonds, and does so at
+   several positions of the grid, since the answer of this method depends on it. Axisymmetric by default:
+   a few seconds a run at 14 um. Every finished run is kept in the output folder under its whole
+   description and never repeated; delete the folder after changing the headers. Source A: 824, 809, 791,
+   776, 761 m/s for 14, 18, 22, 26, 30 um. SPDX-License-Identifier: MIT */
+#define MPM_IMPLEMENTATION
+#include "critical.h"
+
+#define OFFSETS 32
+
+typedef struct request {
+    const char *folder, *substrate;
+    long offsets;
+    critical_rule rule;
+    critical_range range;
+} request;
+
+static int fail(const char *message)
+{
+    fprintf(stderr, "error: %s\n", message);
+    return 1;
+}
+
+/* Every run: offset by offset in the order of velocity. */
+static int by_velocity(const void *a, const void *b)
+{
+    const critical_run *x = (const critical_run *)a, *y = (const critical_run *)b;
+    if (x->offset != y->offset) return (x->offset > y->offset) - (x->offset < y->offset);
+    return (x->velocity > y->velocity) - (x->velocity < y->velocity);
+}
+
+static int write_curve(const request *q, const critical_curve *curve, mpm_fault *fault)
+{
+    char path[MPM_IO_PATH], columns[1000] = "grid_offset_um,velocity_m_s,bonds";
+    mpm_io_csv t;
+    int k, v;
+    for (v = 0; v < STUDY_CPU; v++) {
+        strcat(columns, ",");
+        strcat(columns, study_name[v]);
+    }
+    snprintf(path, sizeof path, "%s/curve.csv", q->folder);
+    mpm_io_csv_begin(&t, path, columns, "examples/critical_velocity.c", fault);
+    for (k = 0; k < curve->runs; k++) {
+        mpm_io_csv_real(&t, (mpm_real)curve->run[k].offset);
+        mpm_io_csv_real(&t, (mpm_real)curve->run[k].velocity);
+        mpm_io_csv_integer(&t, curve->run[k].bonds);
+        for (v = 0; v < STUDY_CPU; v++) mpm_io_csv_real(&t, (mpm_real)curve->run[k].value[v]);
+    }
+    return mpm_io_csv_end(&t, fault) >= 0;
+}
+
+/* PBCP and rebound velocity over impact velocity, a curve per offset. */
+static int draw_curve(const request *q, const critical_curve *curve, mpm_fault *fault)
+{
+    static mpm_real x[CRITICAL_RUNS], y[2][CRITICAL_RUNS];
+    mpm_io_curve line[2][OFFSETS];
+    char name[OFFSETS][40], path[MPM_IO_PATH];
+    mpm_io_plot_desc d[2];
+    int k, p, count = 0;
+    for (k = 0; k < curve->runs; k++) {
+        const critical_run *r = &curve->run[k];
+        if (k == 0 || r->offset != curve->run[k - 1].offset) {
+            snprintf(name[count], sizeof name[0], "grid at %.3g um", r->offset);
+            for (p = 0; p < 2; p++) {
+                memset(&line[p][count], 0, sizeof line[0][0]);
+                line[p][count].name = name[count];
+                line[p][count].x = x + k;
+                line[p][count].y = y[p] + k;
+                line[p][count].color = count;
+            }
+            count++;
+        }
+        x[k] = (mpm_real)r->velocity;
+        y[0][k] = (mpm_real)r->value[STUDY_PBCP];
+        y[1][k] = (mpm_real)r->value[STUDY_V_REST];
+        line[0][count - 1].count++;
+        line[1][count - 1].count++;
+    }
+    for (p = 0; p < 2; p++) {
+        d[p] = mpm_io_plot_desc_default();
+        d[p].curves = line[p];
+        d[p].curve_count = count;
+        d[p].x_label = "impact velocity, m/s";
+        d[p].y_label = p ? "m/s" : "%";
+        d[p].title = p ? "rebound velocity" : "PBCP";
+    }
+    snprintf(path, sizeof path, "%s/curve.png", q->folder);
+    return study_plots(path, d, 2, 2, "examples/critical_velocity.c", fault);
+}
+
+static int write_summary(const request *q, const critical_answer *a, const critical_spread *s, const study *st,
+                         const option *o, int n, mpm_fault *fault)
+{
+    char path[MPM_IO_PATH], text[256], name[40];
+    mpm_io_json j;
+    int k;
+    snprintf(path, sizeof path, "%s/summary.json", q->folder);
+    mpm_io_json_begin(&j, path, fault);
+    mpm_io_json_number(&j, "critical_velocity_m_s", s->median); /* null: nothing bonded */
+    mpm_io_json_number(&j, "not_bonded_below_m_s", s->middle.below);
+    mpm_io_json_number(&j, "lowest_m_s", s->lowest);
+    mpm_io_json_number(&j, "highest_m_s", s->highest);
+    mpm_io_json_integer(&j, "offsets_without_bond", s->none);
+    mpm_io_json_number(&j, "pbcp_percent", s->middle.pbcp);
+    mpm_io_json_number(&j, "v_rest_m_s", s->middle.v_rest);
+    mpm_io_json_integer(&j, "runs", st->done);
+    mpm_io_json_integer(&j, "runs_made_now", st->fresh);
+    mpm_io_json_number(&j, "cpu_seconds_now", st->spent);
+    mpm_io_json_open(&j, "by_offset");
+    for (k = 0; k < q->offsets; k++) {
+        snprintf(name, sizeof name, "grid_offset_%.6g_um", a[k].offset);
+        mpm_io_json_open(&j, name);
+        mpm_io_json_number(&j, "critical_velocity_m_s", a[k].velocity);
+        mpm_io_json_number(&j, "not_bonded_below_m_s", a[k].below);
+        mpm_io_json_number(&j, "pbcp_percent", a[k].pbcp);
+        mpm_io_json_number(&j, "v_rest_m_s", a[k].v_rest);
+        mpm_io_json_integer(&j, "not_bonded_above", a[k].lost);
+        mpm_io_json_close(&j);
+    }
+    mpm_io_json_close(&j);
+    mpm_io_json_open(&j, "options");
+    for (k = 0; k < n; k++) {
+        option_text(&o[k], text, sizeof text);
+        if (o[k].type == OPTION_REAL) mpm_io_json_number(&j, o[k].name, *(double *)o[k].value);
+        else mpm_io_json_string(&j, o[k].name, text);
+    }
+    mpm_io_json_close(&j);
+    return mpm_io_json_end(&j, fault) >= 0;
+}
+
+static void print_answers(const impact_case *c, const request *q, const critical_answer *a, const critical_spread *s)
+{
+    int k;
+    printf("\n  %s, %g um, rule %s; lowest velocity that bonds\n\n", c->material, c->diameter, q->rule.name);
+    printf("  grid offset um   critical m/s   not below   PBCP %%   rebound m/s   not bonded above\n");
+    for (k = 0; k < q->offsets; k++) {
+        if (a[k].velocity < HUGE_VAL)
+            printf("  %14.4g   %12.4g   %9.4g   %6.2f   %11.3f   %16d\n", a[k].offset, a[k].velocity, a[k].below, a[k].pbcp,
+                   a[k].v_rest, a[k].lost);
+        else
+            printf("  %14.4g   none up to %g\n", a[k].offset, q->range.high);
+    }
+    printf("\n  median %.4g m/s, lowest %.4g, highest %.4g; %s/curve.csv, curve.png, summary.json\n", s->median, s->lowest,
+           s->highest, q->folder);
+}
+
+/* Refuses what makes no search. */
+static int check(const request *q, const impact_case *c, char *m, size_t n)
+{
+    return impact_check(c, m, n) && impact_knows("thesis|stays", "rule", q->rule.name, m, n) &&
+           impact_knows("thesis|large", "substrate", q->substrate, m, n) &&
+           impact_wants(q->offsets >= 1 && q->offsets <= OFFSETS, "offsets", (double)q->offsets, "must be 1 .. 32", m, n) &&
+           impact_wants(q->rule.pbcp >= 0, "pbcp", q->rule.pbcp, "must be >= 0 %", m, n) &&
+           impact_wants(q->rule.v_rest >= 0, "v-rest", q->rule.v_rest, "must be >= 0 m/s", m, n) &&
+           impact_wants(q->rule.stays > 0, "stays", q->rule.stays, "must be > 0 m/s", m, n) &&
+           impact_wants(q->range.low > 0, "low", q->range.low, "must be > 0 m/s", m, n) &&
+           impact_wants(q->range.high >= q->range.low && q->range.high < 1e5, "high", q->range.high,
+                        "must not be under --low", m, n) &&
+           impact_wants(q->range.step > 0, "step", q->range.step, "must be > 0 m/s", m, n) &&
+           impact_wants(q->range.scan >= q->range.step, "scan", q->range.scan, "must not be under --step", m, n) &&
+           impact_wants(critical_cost(&q->range) * q->offsets <= CRITICAL_RUNS, "scan", q->range.scan,
+                        "makes more than 2000 runs", m, n);
+}
+
+int main(int argc, char **argv)
+{
+    static critical_curve curve;
+    critical_answer answer[OFFSETS];
+    critical_spread spread;
+    impact_case c = study_case_default();
+    study st = study_of("build/critical");
+    request q;
+    option o[STUDY_OPTIONS];
+    char message[400];
+    mpm_fault fault;
+    int n, k, status, whole = 0, parsed;
+    q.folder = st.folder;
+    q.substrate = "thesis";
+    q.offsets = 1;
+    q.rule = critical_rule_default();
+    q.range = critical_range_default();
+    n = study_case_options(&c, o);
+    for (k = 0; strcmp(o[k].name, "velocity"); k++) continue;
+    o[k] = o[--n]; /* what is looked for */
+    for (k = 0; strcmp(o[k].name, "grid-offset"); k++) continue;
+    o[k] = o[--n]; /* by --offsets */
+    study_option(o, &n, "substrate", OPTION_TEXT, &q.substrate, "thesis|large: source A's sizes, or 5 x 2.5 diameters");
+    study_option(o, &n, "rule", OPTION_TEXT, &q.rule.name, "thesis|stays: what counts as bonded");
+    study_option(o, &n, "pbcp", OPTION_REAL, &q.rule.pbcp, "rule thesis: least PBCP, %; 0: 5, at 14 um 4.8");
+    study_option(o, &n, "v-rest", OPTION_REAL, &q.rule.v_rest, "rule thesis: highest rebound, m/s; 0: 0.6, at 14 um 0.9");
+    study_option(o, &n, "stays", OPTION_REAL, &q.rule.stays, "rule stays: the late mean velocity is below, m/s");
+    study_option(o, &n, "low", OPTION_REAL, &q.range.low, "lowest velocity, m/s");
+    study_option(o, &n, "high", OPTION_REAL, &q.range.high, "highest velocity, m/s");
+    study_option(o, &n, "scan", OPTION_REAL, &q.range.scan, "distance of the first velocities, m/s");
+    study_option(o, &n, "step", OPTION_REAL, &q.range.step, "width of the bracket at the end, m/s");
+    study_option(o, &n, "offsets", OPTION_LONG, &q.offsets, "grid offsets: k/N of a cell, k = 0 .. N-1");
+    study_option(o, &n, "limit", OPTION_LONG, &st.limit, "stop after so many new runs; < 0: never");
+    study_option(o, &n, "whole-time", OPTION_FLAG, &whole, "do not end a run early when the particle has left");
+    study_option(o, &n, "out", OPTION_TEXT, &q.folder, "output folder");
+    study_option(o, &n, "quiet", OPTION_FLAG, &st.quiet, "no progress line, no table");
+    parsed = options_parse(argc, argv, "The lowest impact velocity that bonds. Writes curve.csv, curve.png and "
+                           "summary.json\ninto the output folder; run again after an interruption, it goes on.", o, n);
+    if (parsed) return parsed < 0;
+    study_complete(&c, q.substrate);
+    if (!check(&q, &c, message, sizeof message)) return fail(message);
+    st.folder = q.folder;
+    st.early = !whole;
+    st.planned = critical_cost(&q.range) * q.offsets;
+    for (k = 0; k < q.offsets; k++) {
+        c.offset = c.cell * k / (double)q.offsets;
+        status = critical_search(&st, &c, &q.range, &q.rule, &curve, &answer[k], message, sizeof message);
+        study_progress_end(&st);
+        if (status == 0) return fail(message);
+        if (status < 0) {
+            printf("stopped after %ld new runs; %ld are done: run again to go on\n", st.fresh, st.done);
+            return 3;
+        }
+    }
+    spread = critical_summary(answer, (int)q.offsets);
+    qsort(curve.run, (size_t)curve.runs, sizeof curve.run[0], by_velocity);
+    if (!write_curve(&q, &curve, &fault) || !draw_curve(&q, &curve, &fault) ||
+        !write_summary(&q, answer, &spread, &st, o, n, &fault)) {
+        mpm_io_fault_text(message, sizeof message, &fault);
+        return fail(message);
+    }
+    if (!st.quiet) print_answers(&c, &q, answer, &spread);
+    return 0;
+}

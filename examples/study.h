@@ -1,0 +1,364 @@
+/* study.h - many impacts for one answer: a table of the options that make a case, one case run to its end
+   and measured, and a store of finished runs, so that an interrupted study goes on where it stopped.
+   SPDX-License-Identifier: MIT */
+#ifndef STUDY_H
+#define STUDY_H
+
+#include "impact_case.h"
+#include "options.h"
+
+#include <time.h>
+
+/* ---- the case ------------------------------------------------------------------------------ */
+
+#define STUDY_OPTIONS 40 /* room for the options of a case and a program's own */
+
+static inline void study_option(option *o, int *n, const char *name, option_type type, void *value, const char *help)
+{
+    o[*n].name = name;
+    o[*n].type = type;
+    o[*n].value = value;
+    o[*n].help = help;
+    (*n)++;
+}
+
+/* Everything that makes a case, as options: also what a finished run is known by. Returns their number. */
+static inline int study_case_options(impact_case *c, option *o)
+{
+    int n = 0;
+    study_option(o, &n, "diameter", OPTION_REAL, &c->diameter, "particle diameter, um");
+    study_option(o, &n, "velocity", OPTION_REAL, &c->velocity, "impact velocity, m/s");
+    study_option(o, &n, "cell", OPTION_REAL, &c->cell, "grid cell edge, um");
+    study_option(o, &n, "spacing", OPTION_REAL, &c->spacing, "distance of material points, um");
+    study_option(o, &n, "substrate-diameter", OPTION_REAL, &c->substrate_diameter, "um; 0: by --substrate");
+    study_option(o, &n, "substrate-height", OPTION_REAL, &c->substrate_height, "um; 0: by --substrate");
+    study_option(o, &n, "time", OPTION_REAL, &c->time, "simulated time, ns; 0: 80, and longer beyond 30 um");
+    study_option(o, &n, "dt-factor", OPTION_REAL, &c->dt_factor, "time step over the critical step of a 0.5 um cell");
+    study_option(o, &n, "bond", OPTION_TEXT, &c->bond, "energy|none");
+    study_option(o, &n, "gc", OPTION_REAL, &c->gc, "critical bond energy, J/m2");
+    study_option(o, &n, "gdot", OPTION_REAL, &c->gdot, "critical bond energy rate, J/m2/us");
+    study_option(o, &n, "floor", OPTION_REAL, &c->floor, "least value of the rate factor of the bond threshold");
+    study_option(o, &n, "symmetry", OPTION_TEXT, &c->symmetry, "quarter|full, in 3d");
+    study_option(o, &n, "geometry", OPTION_TEXT, &c->geometry, "3d|axisymmetric");
+    study_option(o, &n, "functions", OPTION_TEXT, &c->functions, "shape functions: linear|gimp");
+    study_option(o, &n, "friction", OPTION_REAL, &c->friction, "Coulomb coefficient between the bodies");
+    study_option(o, &n, "normal", OPTION_TEXT, &c->normal, "contact normal: ranked|mvg|average|vertical");
+    study_option(o, &n, "material", OPTION_TEXT, &c->material, "material of both bodies");
+    study_option(o, &n, "plasticity", OPTION_TEXT, &c->plasticity, "return mapping: consistent|staged");
+    study_option(o, &n, "gap", OPTION_REAL, &c->gap, "distance of the bodies at the start, um");
+    study_option(o, &n, "margin", OPTION_REAL, &c->margin, "free grid around the bodies, particle diameters");
+    study_option(o, &n, "grid-offset", OPTION_REAL, &c->offset, "height of a grid plane above the interface, um");
+    return n;
+}
+
+/* The case of the studies: axisymmetric, 1.0/0.25 um, time step factor 0.2; sizes left to study_complete. */
+static inline impact_case study_case_default(void)
+{
+    impact_case c = impact_case_default();
+    c.geometry = "axisymmetric";
+    c.cell = 1;
+    c.spacing = 0.25;
+    c.dt_factor = 0.2;
+    c.substrate_diameter = c.substrate_height = c.time = 0;
+    return c;
+}
+
+/* Source A's substrates (Table 5.3): its diameter between the listed sizes by interpolation, in proportion
+   beyond them; 10 um high between 14 and 30 um, in proportion beyond. "large": 5 diameters wide, 2.5 high. */
+static inline void study_complete(impact_case *c, const char *substrate)
+{
+    static const double size[5] = {14, 18, 22, 26, 30}, wide[5] = {30, 36, 44, 46, 50};
+    const double d = c->diameter, near_size = d < 14 ? 14 : d > 30 ? 30 : d;
+    double width = d * (d < 14 ? 30.0 / 14 : 50.0 / 30);
+    int k;
+    for (k = 0; k < 4; k++)
+        if (d >= size[k] && d <= size[k + 1])
+            width = wide[k] + (wide[k + 1] - wide[k]) * (d - size[k]) / (size[k + 1] - size[k]);
+    if (!(c->substrate_diameter > 0)) c->substrate_diameter = strcmp(substrate, "large") ? width : 5 * d;
+    if (!(c->substrate_height > 0)) c->substrate_height = strcmp(substrate, "large") ? 10 * d / near_size : 2.5 * d;
+    if (!(c->time > 0)) c->time = d > 30 ? 80 * d / 30 : 80;
+}
+
+/* The case in words: version, whether it may end early, and every option with its value. */
+static inline void study_key(const impact_case *c, int early, char *key, size_t n)
+{
+    impact_case copy = *c;
+    option o[STUDY_OPTIONS];
+    char value[64];
+    int k, count = study_case_options(&copy, o);
+    size_t at = (size_t)snprintf(key, n, "mpm %s, %d digits, %s", MPM_VERSION, MPM_DIGITS, early ? "early end" : "full time");
+    for (k = 0; k < count && at < n; k++) {
+        option_text(&o[k], value, sizeof value);
+        at += (size_t)snprintf(key + at, n - at, ", %s %s", o[k].name, value);
+    }
+}
+
+/* ---- one run ------------------------------------------------------------------------------- */
+
+/* What is kept of a run. Velocities along z, relative to the substrate's mean. */
+enum {
+    STUDY_PBCP,       /* % */
+    STUDY_ABP,
+    STUDY_CONTACTED,  /* surface points */
+    STUDY_V_REST,     /* mean over the particle's points up to 60 m/s, at the end */
+    STUDY_V_MEAN,     /* mass-weighted mean, at the end */
+    STUDY_V_LATE,     /* the same averaged over the last eighth of the time */
+    STUDY_DRIFT,      /* the substrate's mean */
+    STUDY_HELD,       /* node pairs held by the bond in the last step */
+    STUDY_HELD_LATE,  /* share of the steps of the last eighth in which any was */
+    STUDY_FLATTENING,
+    STUDY_EPS,        /* mean plastic strain of the particle */
+    STUDY_WORK,       /* mean plastic energy density of the particle, MPa */
+    STUDY_T_MAX,      /* K */
+    STUDY_EJECTED,    /* share of the particle's mass faster than 60 m/s */
+    STUDY_UNACCOUNTED, /* energy, of the initial */
+    STUDY_END,        /* ns simulated */
+    STUDY_STEPS,
+    STUDY_POINTS,
+    STUDY_CPU,        /* s */
+    STUDY_VALUES
+};
+
+static const char *const study_name[STUDY_VALUES] = {
+    "pbcp_percent", "abp", "contacted_points", "v_rest_m_s", "v_mean_m_s", "v_late_m_s", "substrate_drift_m_s",
+    "held_pairs", "held_late_share", "flattening", "eps_mean", "plastic_energy_density_MPa", "temperature_max_K",
+    "ejected_mass_share", "energy_unaccounted", "end_ns", "steps", "points", "cpu_s"};
+
+/* A study under way: where finished runs are kept, and what the progress line needs. */
+typedef struct study {
+    const char *folder;     /* finished runs: one file each, in folder/runs */
+    int quiet, early;       /* early: end a run once the particle has left for good */
+    long limit;             /* new runs allowed; < 0: any number */
+    long planned, done, fresh; /* runs: in all (a guess at first), finished, of these made now */
+    double spent;           /* wall seconds of the fresh ones */
+    char label[80];
+    time_t shown;
+} study;
+
+static inline study study_of(const char *folder)
+{
+    study s;
+    memset(&s, 0, sizeof s);
+    s.folder = folder;
+    s.early = 1;
+    s.limit = -1;
+    return s;
+}
+
+/* "run 12 of 40, 14 um at 810 m/s, 35 %, left 2:10", at most once a second. */
+static inline void study_progress(study *s, double part, double seconds)
+{
+    const time_t now = time(NULL);
+    const double each = ((double)s->fresh + part) > 0 ? (s->spent + seconds) / ((double)s->fresh + part) : 0;
+    double left = each * ((double)(s->planned - s->done) - part);
+    char line[200];
+    if (s->quiet || now == s->shown) return;
+    s->shown = now;
+    if (left < 0) left = 0;
+    snprintf(line, sizeof line, "run %ld of %ld, %s, %.0f %%, left %.0f:%02d", s->done + 1,
+             s->planned > s->done ? s->planned : s->done + 1, s->label, 100 * part, floor(left / 60), (int)fmod(left, 60));
+    fprintf(stderr, "\r%-100s", line);
+    fflush(stderr);
+}
+
+static inline void study_progress_end(const study *s)
+{
+    if (!s->quiet) fprintf(stderr, "\r%-100s\r", "");
+}
+
+/* Mean height and velocity of the particle over those of the substrate. */
+static inline void study_distance(const mpm_world *w, double *height, double *velocity)
+{
+    double sum[2][3] = {{0, 0, 0}, {0, 0, 0}};
+    int b;
+    int32_t i;
+    for (b = 0; b < 2; b++)
+        for (i = w->body[b].first; i < w->body[b].first + w->body[b].active; i++) {
+            const double m = (double)w->points.mass[i];
+            sum[b][0] += m;
+            sum[b][1] += m * (double)w->points.x[2][i];
+            sum[b][2] += m * (double)w->points.v[2][i];
+        }
+    for (b = 0; b < 2; b++)
+        if (!(sum[b][0] > 0)) sum[b][0] = 1;
+    *height = sum[0][1] / sum[0][0] - sum[1][1] / sum[1][0];
+    *velocity = sum[0][2] / sum[0][0] - sum[1][2] / sum[1][0];
+}
+
+/* One step with bonding; the grid's memory grows when ejected points need it. */
+static inline mpm_status study_step(impact *s)
+{
+    mpm_world *w = &s->world;
+    const mpm_real dt = s->dt;
+    mpm_status status;
+    while ((status = mpm_locate(w)) == MPM_ERR_FULL)
+        if ((status = mpm_grow(w, NULL, 0)) < 0) break;
+    if (status < 0) return status;
+    mpm_p2g(w);
+    mpm_forces(w, dt);
+    mpm_grid_update(w, dt);
+    mpm_contact_find(w);
+    mpm_bond_grow(&s->bond, w, dt);
+    mpm_bond_nodes(&s->bond, w);
+    mpm_contact_apply(w, dt);
+    mpm_g2p(w, dt);
+    mpm_musl(w, dt);
+    if ((status = mpm_stress(w, dt)) < 0) return status;
+    mpm_move(w, dt);
+    return MPM_OK;
+}
+
+/* Runs a case to its end. With s->early it ends as soon as the outcome is decided: in a twentieth of
+   the time no pair was held, and the particle leaves the substrate at more than 5 m/s, all points or
+   only those up to 60 m/s, with a mean that changed by less than 1 % in that time. Returns 1, or 0
+   with a message. */
+static inline int study_run(study *s, const impact_case *c, double *value, char *message, size_t n)
+{
+    impact run;
+    impact_result r;
+    clock_t begun = clock();
+    long late, part, held = 0, held_late = 0;
+    double height = 0, velocity = 0, before = 0, start = 0, late_time = 0;
+    if (!impact_begin(&run, c, message, n)) return 0;
+    late = run.steps - run.steps / 8;
+    part = run.steps / 20 > 0 ? run.steps / 20 : 1;
+    while (run.world.steps < run.steps) {
+        const mpm_world *w = &run.world;
+        if (w->steps == late) {
+            study_distance(w, &start, &velocity);
+            late_time = (double)w->time;
+        }
+        if (study_step(&run) < 0) {
+            mpm_io_fault_text(message, n, &run.world.fault);
+            mpm_free(&run.world);
+            return 0;
+        }
+        held += w->held > 0;
+        if (w->steps > late) held_late += w->held > 0;
+        if (w->steps % 64 == 0)
+            study_progress(s, (double)w->steps / (double)run.steps, (double)(clock() - begun) / (double)CLOCKS_PER_SEC);
+        if (w->steps % part) continue;
+        study_distance(w, &height, &velocity);
+        if (s->early && held == 0 && w->steps < late && velocity > 5 && fabs(velocity - before) < 0.01 * velocity &&
+            mpm_restitution(w, IMPACT_PARTICLE, 60).filtered > 5)
+            break;
+        before = velocity;
+        held = 0;
+    }
+    r = impact_measure(&run, c);
+    study_distance(&run.world, &height, &velocity);
+    value[STUDY_PBCP] = r.bond.pbcp;
+    value[STUDY_ABP] = r.bond.abp;
+    value[STUDY_CONTACTED] = (double)r.bond.contacted;
+    value[STUDY_V_REST] = r.rebound.filtered - r.substrate_drift;
+    value[STUDY_V_MEAN] = r.rebound.mean - r.substrate_drift;
+    value[STUDY_V_LATE] = late_time > 0 && (double)run.world.time > late_time
+                              ? (height - start) / ((double)run.world.time - late_time) : value[STUDY_V_MEAN];
+    value[STUDY_DRIFT] = r.substrate_drift;
+    value[STUDY_HELD] = (double)run.world.held;
+    value[STUDY_HELD_LATE] = run.world.steps > late ? (double)held_late / (double)(run.world.steps - late) : 0;
+    value[STUDY_FLATTENING] = r.flattening;
+    value[STUDY_EPS] = r.particle.plastic_strain_mean;
+    value[STUDY_WORK] = r.particle.plastic_work_mean;
+    value[STUDY_T_MAX] = r.all.temperature_max;
+    value[STUDY_EJECTED] = r.rebound.ejected_mass / r.particle.mass;
+    value[STUDY_UNACCOUNTED] = r.energy_unaccounted;
+    value[STUDY_END] = (double)run.world.time * 1e3;
+    value[STUDY_STEPS] = (double)run.world.steps;
+    value[STUDY_POINTS] = (double)r.all.points;
+    value[STUDY_CPU] = (double)(clock() - begun) / (double)CLOCKS_PER_SEC;
+    mpm_free(&run.world);
+    return 1;
+}
+
+/* ---- finished runs ------------------------------------------------------------------------- */
+
+/* folder/runs/<hash of the key>.json; the hash is FNV-1a, 64 bits. */
+static inline void study_path(const study *s, const char *key, char *path, size_t n)
+{
+    uint64_t h = UINT64_C(14695981039346656037);
+    for (; *key; key++) h = (h ^ (uint64_t)(unsigned char)*key) * UINT64_C(1099511628211);
+    snprintf(path, n, "%s/runs/%08lx%08lx.json", s->folder, (unsigned long)(h >> 32), (unsigned long)(h & 0xffffffffu));
+}
+
+/* Reads a finished run. Returns 1 if it is there, whole and of this very case. */
+static inline int study_find(const study *s, const impact_case *c, double *value)
+{
+    char key[1200], path[MPM_IO_PATH], text[4000], quoted[80];
+    size_t n;
+    FILE *f;
+    int k;
+    study_key(c, s->early, key, sizeof key);
+    study_path(s, key, path, sizeof path);
+    f = fopen(path, "rb");
+    if (!f) return 0;
+    n = fread(text, 1, sizeof text - 1, f);
+    fclose(f);
+    text[n] = 0;
+    if (!strstr(text, key)) return 0;
+    for (k = 0; k < STUDY_VALUES; k++) {
+        const char *at;
+        snprintf(quoted, sizeof quoted, "\"%s\":", study_name[k]);
+        at = strstr(text, quoted);
+        if (!at) return 0;
+        value[k] = strtod(at + strlen(quoted), NULL);
+    }
+    return 1;
+}
+
+static inline int study_keep(const study *s, const impact_case *c, const double *value, char *message, size_t n)
+{
+    char key[1200], path[MPM_IO_PATH];
+    mpm_io_json j;
+    mpm_fault fault;
+    int k;
+    study_key(c, s->early, key, sizeof key);
+    snprintf(path, sizeof path, "%s/runs", s->folder);
+    if (mpm_io_make_directory(path, &fault) >= 0) {
+        study_path(s, key, path, sizeof path);
+        mpm_io_json_begin(&j, path, &fault);
+        mpm_io_json_string(&j, "case", key);
+        for (k = 0; k < STUDY_VALUES; k++) mpm_io_json_number(&j, study_name[k], value[k]);
+        if (mpm_io_json_end(&j, &fault) >= 0) return 1;
+    }
+    snprintf(message, n, "cannot write %.300s", path);
+    return 0;
+}
+
+/* The values of a case: from the store, or by running it now. Returns 1; 0 with a message; -1 when the
+   limit of new runs is reached. */
+static inline int study_need(study *s, const impact_case *c, double *value, char *message, size_t n)
+{
+    clock_t begun;
+    if (study_find(s, c, value)) {
+        s->done++;
+        return 1;
+    }
+    if (s->limit >= 0 && s->fresh >= s->limit) return -1;
+    begun = clock();
+    snprintf(s->label, sizeof s->label, "%g um at %g m/s", c->diameter, c->velocity);
+    if (!study_run(s, c, value, message, n) || !study_keep(s, c, value, message, n)) return 0;
+    s->spent += (double)(clock() - begun) / (double)CLOCKS_PER_SEC;
+    s->fresh++;
+    s->done++;
+    return 1;
+}
+
+/* ---- plots --------------------------------------------------------------------------------- */
+
+/* `count` plots in one picture. */
+static inline int study_plots(const char *path, const mpm_io_plot_desc *d, int count, int columns, const char *note,
+                              mpm_fault *fault)
+{
+    mpm_io_canvas canvas;
+    const int rows = (count + columns - 1) / columns;
+    int k;
+    mpm_status status = mpm_io_canvas_init(&canvas, 620 * columns, 440 * rows, NULL, 0);
+    for (k = 0; k < count && status >= 0; k++)
+        status = mpm_io_plot(&canvas, mpm_io_tile(&canvas, columns, rows, k), &d[k], fault);
+    if (status >= 0) status = mpm_io_png(path, &canvas, note, fault);
+    mpm_io_canvas_free(&canvas);
+    return status >= 0;
+}
+
+#endif

@@ -39,12 +39,24 @@ static const char *file_in(const char *folder, const char *name, char *path, siz
     return path;
 }
 
+/* "al", or "al on cu". */
+static const char *metals(const impact *s, char *text, size_t n)
+{
+    const char *a = s->material[IMPACT_PARTICLE].name, *b = s->material[IMPACT_SUBSTRATE].name;
+    if (strcmp(a, b)) snprintf(text, n, "%s on %s", a, b);
+    else snprintf(text, n, "%s", a);
+    return text;
+}
+
 /* Two cuts of the whole cross-section: plastic strain and temperature. */
 static void describe_cuts(const impact *s, const impact_case *c, mpm_io_cut_desc cut[2], const char *title,
                           const char *time)
 {
     const mpm_world *w = &s->world;
+    const mpm_material *a = &s->material[IMPACT_PARTICLE], *b = &s->material[IMPACT_SUBSTRATE];
     const double edge = 1.1 * c->substrate_diameter / 2;
+    const double cold = (double)(a->temperature < b->temperature ? a->temperature : b->temperature);
+    const double melt = (double)(a->melt_temperature > b->melt_temperature ? a->melt_temperature : b->melt_temperature);
     int i;
     for (i = 0; i < 2; i++) {
         cut[i] = mpm_io_cut_of(w, i == 0 ? w->points.plastic_strain : w->points.temperature);
@@ -53,7 +65,7 @@ static void describe_cuts(const impact *s, const impact_case *c, mpm_io_cut_desc
         cut[i].window[0] = -edge;
         cut[i].window[1] = edge;
         cut[i].window[2] = -1.05 * c->substrate_height;
-        cut[i].window[3] = 1.1 * (c->diameter + (c->gap > 0 ? c->gap : 0));
+        cut[i].window[3] = 1.1 * (2 * impact_half_height(c) + (c->gap > 0 ? c->gap : 0));
         cut[i].length_unit = "um";
         cut[i].time = time;
     }
@@ -63,17 +75,17 @@ static void describe_cuts(const impact *s, const impact_case *c, mpm_io_cut_desc
     cut[0].high = 4;
     cut[1].label = "temperature (K)";
     cut[1].map = MPM_IO_HEAT;
-    cut[1].low = (double)s->material.temperature;
-    cut[1].high = (double)s->material.melt_temperature;
+    cut[1].low = cold;
+    cut[1].high = melt > cold ? melt : cold + 600;
 }
 
 static int write_picture(const impact *s, const impact_case *c, const char *path)
 {
     mpm_io_cut_desc cut[2];
     mpm_fault fault;
-    char time[32], title[96];
+    char time[32], title[160], name[64];
     snprintf(time, sizeof time, "t = %.1f ns", (double)s->world.time * 1e3);
-    snprintf(title, sizeof title, "%s, %g um at %g m/s", c->material, c->diameter, c->velocity);
+    snprintf(title, sizeof title, "%s, %g um at %g m/s", metals(s, name, sizeof name), c->diameter, c->velocity);
     describe_cuts(s, c, cut, title, time);
     if (mpm_io_cut_png(path, cut, 2, 2, 800, &fault) < 0) return report(&fault, path);
     return 1;
@@ -134,6 +146,7 @@ static int write_summary(const impact *s, const impact_case *c, const output *o,
                          double cpu)
 {
     const impact_result r = impact_measure(s, c);
+    const mpm_material *a = &s->material[IMPACT_PARTICLE], *b = &s->material[IMPACT_SUBSTRATE];
     const mpm_world *w = &s->world;
     char path[1024], text[256];
     mpm_fault fault;
@@ -141,16 +154,24 @@ static int write_summary(const impact *s, const impact_case *c, const output *o,
     int i;
     mpm_io_json_begin(&j, file_in(o->folder, "summary.json", path, sizeof path), &fault);
     mpm_io_json_number(&j, "pbcp_percent", r.bond.pbcp);
+    mpm_io_json_number(&j, "pbcp_particle_percent", r.particle_bond.pbcp);
     mpm_io_json_number(&j, "abp", r.bond.abp);
     mpm_io_json_integer(&j, "contacted_points", r.bond.contacted);
     mpm_io_json_integer(&j, "bonded_points", r.bond.bonded);
     mpm_io_json_integer(&j, "held_pairs", w->held);
     mpm_io_json_number(&j, "v_rest_filtered_m_s", r.rebound.filtered);
     mpm_io_json_number(&j, "v_rest_mean_m_s", r.rebound.mean);
+    mpm_io_json_number(&j, "v_rest_filtered_relative_m_s", r.filtered_relative);
+    mpm_io_json_number(&j, "v_rest_relative_m_s", r.relative);
     mpm_io_json_number(&j, "v_noise_m_s", r.rebound.noise);
+    mpm_io_json_number(&j, "v_tangential_m_s", r.tangential);
     mpm_io_json_number(&j, "substrate_drift_m_s", r.substrate_drift);
     mpm_io_json_number(&j, "restitution_ratio", r.restitution);
     mpm_io_json_number(&j, "flattening", r.flattening);
+    mpm_io_json_number(&j, "crater_depth_um", r.crater);
+    mpm_io_json_number(&j, "contact_area_um2", r.contact_area);
+    mpm_io_json_number(&j, "bonded_area_um2", r.bonded_area);
+    mpm_io_json_number(&j, "ejected_mass_fraction", r.ejected_fraction);
     mpm_io_json_number(&j, "eps_mean", r.particle.plastic_strain_mean);
     mpm_io_json_number(&j, "plastic_energy_density_mean_MPa", r.particle.plastic_work_mean);
     mpm_io_json_number(&j, "temperature_max_K", r.all.temperature_max);
@@ -172,8 +193,8 @@ static int write_summary(const impact *s, const impact_case *c, const output *o,
     mpm_io_json_number(&j, "energy_bond_fraction", w->ledger.bond / s->start.kinetic);
     mpm_io_json_integer(&j, "floor_hits", s->bond.floor_hits);
     mpm_io_json_integer(&j, "bond_increments", s->bond.increments);
-    mpm_io_json_integer(&j, "shear_floor_hits", (long long)s->material.shear_floor_hits);
-    mpm_io_json_integer(&j, "iteration_hits", (long long)s->material.iteration_hits);
+    mpm_io_json_integer(&j, "shear_floor_hits", (long long)(a->shear_floor_hits + b->shear_floor_hits));
+    mpm_io_json_integer(&j, "iteration_hits", (long long)(a->iteration_hits + b->iteration_hits));
     mpm_io_json_integer(&j, "sorts", w->sorts);
     mpm_io_json_open(&j, "options");
     for (i = 0; i < n; i++) {
@@ -191,13 +212,16 @@ static void print_table(const impact *s, const impact_case *c, double cpu)
 {
     const impact_result r = impact_measure(s, c);
     const mpm_world *w = &s->world;
-    const int stays = fabs(r.rebound.mean - r.substrate_drift) <= 5 && w->held > 0;
-    printf("\n  %s on %s, %g um at %g m/s after %.4g ns: %s\n\n", c->material, c->material, c->diameter, c->velocity,
+    const int stays = fabs(r.relative) <= 5 && w->held > 0;
+    char name[64];
+    printf("\n  %s, %g um at %g m/s after %.4g ns: %s\n\n", metals(s, name, sizeof name), c->diameter, c->velocity,
            (double)w->time * 1e3, stays ? "stays" : "rebounds");
     printf("  rebound velocity, mean          %10.3f m/s\n", r.rebound.mean);
     printf("  rebound velocity, |v| <= 60 m/s %10.3f m/s  (%.4f of the impact velocity)\n", r.rebound.filtered,
            r.restitution);
     printf("  velocity noise in the particle  %10.3f m/s\n", r.rebound.noise);
+    if (fabs(c->angle) > 0)
+        printf("  tangential velocity, mean       %10.3f m/s\n", r.tangential);
     printf("  substrate drift                 %10.3f m/s\n", r.substrate_drift);
     printf("  PBCP                            %10.3f %%    (%ld of %ld contacted points)\n", r.bond.pbcp,
            r.bond.bonded, r.bond.contacted);
@@ -205,7 +229,8 @@ static void print_table(const impact *s, const impact_case *c, double cpu)
     printf("  node pairs held by the bond     %10ld\n", w->held);
     printf("  mean plastic strain             %10.4f\n", r.particle.plastic_strain_mean);
     printf("  mean plastic energy density     %10.2f MPa\n", r.particle.plastic_work_mean);
-    printf("  flattening                      %10.4f\n", r.flattening);
+    printf("  flattening                      %10.4f     crater %.3f um deep\n", r.flattening, r.crater);
+    printf("  area of the particle, contact   %10.3f um2, bonded %.3f um2\n", r.contact_area, r.bonded_area);
     printf("  highest temperature             %10.1f K\n", r.all.temperature_max);
     printf("  points ejected, retired         %10ld, %ld of %ld\n", r.rebound.ejected, w->retired, r.all.points);
     printf("  energy: absorbed by dampers     %10.3f %%    lost in contact %.3f %%, in the bond %.3f %%\n",
@@ -286,22 +311,33 @@ int main(int argc, char **argv)
     const option options[] = {
         {"diameter", OPTION_REAL, &c.diameter, "particle diameter, um"},
         {"velocity", OPTION_REAL, &c.velocity, "impact velocity, m/s"},
+        {"angle", OPTION_REAL, &c.angle, "velocity from the surface normal, degrees (with symmetry half, full)"},
+        {"shape", OPTION_TEXT, &c.shape, "of the particle: sphere|ellipsoid"},
+        {"aspect", OPTION_REAL, &c.aspect, "of an ellipsoid: height over width, at the volume of the sphere"},
+        {"material", OPTION_TEXT, &c.material, "of the particle"},
+        {"substrate-material", OPTION_TEXT, &c.substrate_material, "of the substrate; empty: as the particle"},
+        {"model", OPTION_TEXT, &c.model, "strength of both: preset|elastic|linear|jc|scg|ptw"},
+        {"temperature", OPTION_REAL, &c.temperature, "at the start, K: softens, expands nothing"},
+        {"substrate-temperature", OPTION_REAL, &c.substrate_temperature, "K; 0: as the particle"},
         {"cell", OPTION_REAL, &c.cell, "grid cell edge, um"},
         {"spacing", OPTION_REAL, &c.spacing, "distance of material points, um"},
         {"substrate-diameter", OPTION_REAL, &c.substrate_diameter, "um"},
         {"substrate-height", OPTION_REAL, &c.substrate_height, "um"},
         {"time", OPTION_REAL, &c.time, "simulated time, ns"},
         {"dt-factor", OPTION_REAL, &c.dt_factor, "time step over the critical step of a 0.5 um cell"},
-        {"bond", OPTION_TEXT, &c.bond, "energy|none"},
+        {"bond", OPTION_TEXT, &c.bond, "energy|strain|none"},
+        {"bond-average", OPTION_TEXT, &c.bond_average, "D of a node from its surface points: mean|weighted|literal"},
         {"gc", OPTION_REAL, &c.gc, "critical bond energy, J/m2"},
         {"gdot", OPTION_REAL, &c.gdot, "critical bond energy rate, J/m2/us"},
+        {"eps-c", OPTION_REAL, &c.eps_c, "strain bond: critical strain"},
+        {"epsdot-c", OPTION_REAL, &c.epsdot_c, "strain bond: critical strain rate, 1/us"},
+        {"shell", OPTION_REAL, &c.shell, "thickness of the surface that contacts and bonds, spacings"},
         {"floor", OPTION_REAL, &c.floor, "least value of the rate factor of the bond threshold"},
-        {"symmetry", OPTION_TEXT, &c.symmetry, "quarter|full"},
-        {"geometry", OPTION_TEXT, &c.geometry, "3d|axisymmetric (with linear functions contact gains energy late: use gimp)"},
+        {"symmetry", OPTION_TEXT, &c.symmetry, "full|half (mirror y = 0)|quarter"},
+        {"geometry", OPTION_TEXT, &c.geometry, "3d|axisymmetric (linear functions: contact gains energy late, use gimp)"},
         {"functions", OPTION_TEXT, &c.functions, "shape functions: linear|gimp"},
         {"friction", OPTION_REAL, &c.friction, "Coulomb coefficient between the bodies"},
         {"normal", OPTION_TEXT, &c.normal, "contact normal: ranked|mvg|average|vertical"},
-        {"material", OPTION_TEXT, &c.material, "material of both bodies"},
         {"plasticity", OPTION_TEXT, &c.plasticity, "return mapping: consistent|staged"},
         {"gap", OPTION_REAL, &c.gap, "distance of the bodies at the start, um"},
         {"margin", OPTION_REAL, &c.margin, "free grid around the bodies, particle diameters"},
@@ -311,7 +347,7 @@ int main(int argc, char **argv)
         {"quiet", OPTION_FLAG, &o.quiet, "no progress line, no table"},
     };
     const int n = (int)(sizeof options / sizeof options[0]);
-    const char *about = "A metal particle hits a plate of the same metal: material point method with bonding.\n"
+    const char *about = "A metal particle hits a metal plate: material point method with bonding.\n"
                         "Writes summary.json, impact.png, impact.pvd (ParaView) and frames into the output folder.";
     char message[300], path[1024];
     mpm_fault fault;

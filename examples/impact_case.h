@@ -14,15 +14,21 @@
 
 /* What to run. Every member is an option of examples/impact; the defaults are its main job. */
 typedef struct impact_case {
-    double diameter, velocity;                     /* um, m/s */
+    double diameter, velocity;                     /* um (of the sphere of equal volume), m/s */
+    double angle;                                  /* degrees between velocity and surface normal; towards +x */
+    double aspect;                                 /* of an ellipsoid: height along z over width */
+    double temperature, substrate_temperature;     /* K, at the start; 0: substrate as particle */
     double cell, spacing;                          /* um */
     double substrate_diameter, substrate_height;   /* um */
     double time, dt_factor;                        /* ns; of the critical step of a 0.5 um cell */
-    double gc, gdot, floor;                        /* J/m2, J/m2/us, 1 */
+    double gc, gdot, floor;                        /* energy bond: J/m2, J/m2/us, 1 */
+    double eps_c, epsdot_c;                        /* strain bond: 1, 1/us */
+    double shell;                                  /* thickness of the surface that contacts and bonds, spacings */
     double friction;
     double gap, offset;                            /* um: start distance; shift of the grid */
     double margin;                                 /* free grid around the bodies, particle diameters */
-    const char *bond, *symmetry, *material, *geometry, *functions, *plasticity, *normal;
+    const char *shape, *material, *substrate_material, *model; /* "": substrate as particle */
+    const char *bond, *bond_average, *symmetry, *geometry, *functions, *plasticity, *normal;
 } impact_case;
 
 static inline impact_case impact_case_default(void)
@@ -31,6 +37,8 @@ static inline impact_case impact_case_default(void)
     memset(&c, 0, sizeof c);
     c.diameter = 14;
     c.velocity = 810;
+    c.aspect = 1;
+    c.temperature = 298;
     c.cell = 1.5;
     c.spacing = 0.5;
     c.substrate_diameter = 30;
@@ -40,10 +48,17 @@ static inline impact_case impact_case_default(void)
     c.gc = 1503.74;
     c.gdot = 2.271e5;
     c.floor = 0.05;
+    c.eps_c = 1.9;       /* A, section 5.3.1 */
+    c.epsdot_c = 1350;
+    c.shell = 1;
     c.margin = 1;
-    c.bond = "energy";
-    c.symmetry = "quarter";
+    c.shape = "sphere";
     c.material = "al";
+    c.substrate_material = "";
+    c.model = "preset";
+    c.bond = "energy";
+    c.bond_average = "mean";
+    c.symmetry = "quarter";
     c.geometry = "3d";
     c.functions = "linear";
     c.plasticity = "consistent";
@@ -51,17 +66,17 @@ static inline impact_case impact_case_default(void)
     return c;
 }
 
+enum { IMPACT_PARTICLE = 0, IMPACT_SUBSTRATE = 1 };
+
 /* A case being run: the world in um, us, ng, whose stress is MPa and velocity m/s. */
 typedef struct impact {
     mpm_world world;
-    mpm_material material;
+    mpm_material material[2]; /* of particle and substrate */
     mpm_bond bond;
     mpm_real dt;          /* us */
     long steps;
     mpm_totals start;
 } impact;
-
-enum { IMPACT_PARTICLE = 0, IMPACT_SUBSTRATE = 1 };
 
 /* Looks a word up in a list "one|two|three". Returns its place, or -1. */
 static inline int impact_word(const char *list, const char *word)
@@ -95,12 +110,31 @@ static inline int impact_knows(const char *list, const char *option, const char 
     return 0;
 }
 
+/* Options that contradict each other. */
+static inline int impact_agrees(const impact_case *c, char *m, size_t n)
+{
+    const int round_ball = !strcmp(c->shape, "sphere");
+    if (round_ball && (c->aspect < 1 || c->aspect > 1))
+        return impact_wants(0, "aspect", c->aspect, "a sphere has none: add --shape ellipsoid", m, n);
+    if (!(fabs(c->angle) > 0)) return 1;
+    if (!strcmp(c->geometry, "axisymmetric"))
+        return impact_wants(0, "angle", c->angle, "an oblique impact is not axisymmetric", m, n);
+    return impact_wants(strcmp(c->symmetry, "quarter") != 0, "angle", c->angle,
+                        "an oblique impact has one mirror plane: add --symmetry half (or full)", m, n);
+}
+
 /* Checks what the library cannot know. Returns 1, or 0 with a message. */
 static inline int impact_check(const impact_case *c, char *m, size_t n)
 {
     const double big = 1e6;
     return impact_wants(c->diameter > 0 && c->diameter < big, "diameter", c->diameter, "must be > 0 um", m, n) &&
            impact_wants(c->velocity > -1e5 && c->velocity < 1e5, "velocity", c->velocity, "must be finite", m, n) &&
+           impact_wants(c->angle > -90 && c->angle < 90, "angle", c->angle, "must be in (-90, 90) degrees", m, n) &&
+           impact_wants(c->aspect >= 0.1 && c->aspect <= 10, "aspect", c->aspect, "must be 0.1 .. 10", m, n) &&
+           impact_wants(c->temperature > 0 && c->temperature < 1e5, "temperature", c->temperature,
+                        "must be > 0 K", m, n) &&
+           impact_wants(c->substrate_temperature >= 0 && c->substrate_temperature < 1e5, "substrate-temperature",
+                        c->substrate_temperature, "must be > 0 K, or 0 for that of the particle", m, n) &&
            impact_wants(c->cell > 0 && c->cell < big, "cell", c->cell, "must be > 0 um", m, n) &&
            impact_wants(c->spacing > 0, "spacing", c->spacing, "must be > 0 um", m, n) &&
            impact_wants(c->spacing <= c->cell, "spacing", c->spacing, "must not be larger than the cell", m, n) &&
@@ -115,38 +149,50 @@ static inline int impact_check(const impact_case *c, char *m, size_t n)
            impact_wants(c->gc > 0 && c->gc < 1e30, "gc", c->gc, "must be > 0 J/m2", m, n) &&
            impact_wants(c->gdot > 0 && c->gdot < 1e30, "gdot", c->gdot, "must be > 0 J/m2/us", m, n) &&
            impact_wants(c->floor > 0 && c->floor < 1e30, "floor", c->floor, "must be > 0", m, n) &&
+           impact_wants(c->eps_c > 0 && c->eps_c < 1e30, "eps-c", c->eps_c, "must be > 0", m, n) &&
+           impact_wants(c->epsdot_c > 0 && c->epsdot_c < 1e30, "epsdot-c", c->epsdot_c, "must be > 0 per us", m, n) &&
+           impact_wants(c->shell > 0 && c->shell < big, "shell", c->shell, "must be > 0 spacings", m, n) &&
            impact_wants(c->friction >= 0 && c->friction < 1e30, "friction", c->friction, "must be >= 0", m, n) &&
            impact_wants(c->gap > -big && c->gap < big, "gap", c->gap, "must be finite", m, n) &&
            impact_wants(c->margin > -big && c->margin < big, "margin", c->margin, "must be finite", m, n) &&
            impact_wants(c->offset > -big && c->offset < big, "grid-offset", c->offset, "must be finite", m, n) &&
-           impact_knows("energy|none", "bond", c->bond, m, n) &&
-           impact_knows("quarter|full", "symmetry", c->symmetry, m, n) &&
+           impact_knows("sphere|ellipsoid", "shape", c->shape, m, n) &&
+           impact_knows("preset|elastic|linear|jc|scg|ptw", "model", c->model, m, n) &&
+           impact_knows("none|energy|strain", "bond", c->bond, m, n) &&
+           impact_knows("mean|weighted|literal", "bond-average", c->bond_average, m, n) &&
+           impact_knows("full|half|quarter", "symmetry", c->symmetry, m, n) &&
            impact_knows("3d|axisymmetric", "geometry", c->geometry, m, n) &&
            impact_knows("linear|gimp", "functions", c->functions, m, n) &&
            impact_knows("ranked|mvg|average|vertical", "normal", c->normal, m, n) &&
-           impact_knows("consistent|staged", "plasticity", c->plasticity, m, n);
+           impact_knows("consistent|staged", "plasticity", c->plasticity, m, n) && impact_agrees(c, m, n);
 }
+
+/* Half axes of the particle across and along z, um: the volume is that of the sphere. */
+static inline double impact_half_width(const impact_case *c) { return c->diameter / 2 / cbrt(c->aspect); }
+static inline double impact_half_height(const impact_case *c) { return impact_half_width(c) * c->aspect; }
 
 /* The grid: planes through the interface z = 0 (shifted by offset), reaching `margin` beyond the
    bodies on the free sides, where ejected material flies. */
 static inline mpm_desc impact_grid(const impact_case *c)
 {
-    const double margin = c->margin * c->diameter;
-    const double radius = (c->substrate_diameter > c->diameter ? c->substrate_diameter : c->diameter) / 2 + margin;
+    const double margin = c->margin * c->diameter, width = 2 * impact_half_width(c);
+    const double radius = (c->substrate_diameter > width ? c->substrate_diameter : width) / 2 + margin;
     const double shift = c->offset - c->cell * floor(c->offset / c->cell);
     const int32_t side = (int32_t)ceil(radius / c->cell - 1e-9);
     const int32_t below = (int32_t)ceil((c->substrate_height + shift) / c->cell - 1e-9) + (margin > 0 ? 3 : 0);
-    const int32_t above = (int32_t)ceil((c->diameter + c->gap + margin - shift) / c->cell - 1e-9);
-    const int full = !strcmp(c->symmetry, "full") && strcmp(c->geometry, "axisymmetric") != 0;
+    const int32_t above = (int32_t)ceil((2 * impact_half_height(c) + c->gap + margin - shift) / c->cell - 1e-9);
+    const int rings = !strcmp(c->geometry, "axisymmetric");
+    const int mirrors = impact_word("full|half|quarter", c->symmetry); /* y = 0, then x = 0 too */
     mpm_desc d = mpm_desc_default();
     int a;
-    d.geometry = strcmp(c->geometry, "axisymmetric") ? MPM_3D : MPM_AXISYMMETRIC;
+    d.geometry = rings ? MPM_AXISYMMETRIC : MPM_3D;
     d.shape = strcmp(c->functions, "gimp") ? MPM_LINEAR : MPM_GIMP;
     d.cell = (mpm_real)c->cell;
     for (a = 0; a < 2; a++) {
-        d.cells[a] = full ? 2 * side : side;
-        d.origin[a] = full ? (mpm_real)(-side * c->cell) : 0;
-        d.side[2 * a] = full ? MPM_SIDE_OPEN : MPM_SIDE_SYMMETRY;
+        const int whole = !rings && mirrors < 2 - a;
+        d.cells[a] = whole ? 2 * side : side;
+        d.origin[a] = whole ? (mpm_real)(-side * c->cell) : 0;
+        d.side[2 * a] = whole ? MPM_SIDE_OPEN : MPM_SIDE_SYMMETRY;
     }
     d.cells[2] = above + below;
     d.origin[2] = (mpm_real)(shift - below * c->cell);
@@ -156,87 +202,203 @@ static inline mpm_desc impact_grid(const impact_case *c)
     return d;
 }
 
-/* Builds the scene. Returns 1, or 0 with a message; then nothing is left to free. */
-static inline int impact_begin(impact *s, const impact_case *c, char *message, size_t n)
+/* The material of a body at its temperature. Heating softens; density and pressure start as at 298 K.
+   Returns 1, or 0 with a message. */
+static inline int impact_metal(mpm_material *m, const impact_case *c, int body, char *message, size_t n)
 {
     const mpm_units units = mpm_units_um_us_ng();
-    mpm_desc d;
-    mpm_body_desc particle = mpm_body_desc_default(), substrate;
-    mpm_fault fault;
-    mpm_status status;
-    memset(s, 0, sizeof *s);
-    if (!impact_check(c, message, n)) return 0;
-    status = mpm_material_preset(&s->material, c->material, &units, &fault);
+    const int other = body == IMPACT_SUBSTRATE && *c->substrate_material;
+    const char *name = other ? c->substrate_material : c->material;
+    const double kelvin = body == IMPACT_SUBSTRATE && c->substrate_temperature > 0 ? c->substrate_temperature
+                                                                                   : c->temperature;
+    mpm_status status = mpm_material_preset(m, name, &units, NULL);
     if (status != MPM_OK) {
-        snprintf(message, n, "--material %s: %s", c->material, mpm_io_status_text(status));
+        snprintf(message, n, "--%smaterial %s: %s", other ? "substrate-" : "", name, mpm_io_status_text(status));
         return 0;
     }
-    if (!strcmp(c->plasticity, "staged")) s->material.mapping = MPM_RETURN_STAGED;
-    s->bond = mpm_bond_default(&units);
-    s->bond.rule = strcmp(c->bond, "none") ? MPM_BOND_ENERGY : MPM_BOND_NONE;
-    s->bond.critical = (mpm_real)c->gc;
-    s->bond.critical_rate = (mpm_real)c->gdot;
-    s->bond.floor = (mpm_real)c->floor;
+    if (strcmp(c->model, "preset") && mpm_material_model(m, c->model, NULL) != MPM_OK) {
+        snprintf(message, n, "--model %s: %s has no published set for it", c->model, name);
+        return 0;
+    }
+    if (!strcmp(c->plasticity, "staged")) m->mapping = MPM_RETURN_STAGED;
+    m->temperature = (mpm_real)kelvin;
+    return 1;
+}
 
-    particle.spacing = (mpm_real)c->spacing;
-    particle.density = s->material.density;
-    particle.temperature = s->material.temperature;
-    particle.stress = mpm_material_stress;
-    particle.material = &s->material;
-    mpm_material_wave_speeds(&s->material, s->material.density, &particle.wave_p, &particle.wave_s);
-    substrate = particle;
-    particle.shape = mpm_sphere(0, 0, (mpm_real)(c->gap + c->diameter / 2), (mpm_real)(c->diameter / 2));
-    particle.velocity[2] = (mpm_real)-c->velocity;
-    substrate.shape = mpm_cylinder(0, 0, (mpm_real)-c->substrate_height, (mpm_real)(c->substrate_diameter / 2),
-                                   (mpm_real)c->substrate_height);
-    substrate.absorb = MPM_BOTTOM | MPM_SIDES;
+static inline mpm_bond impact_bond(const impact_case *c)
+{
+    const mpm_units units = mpm_units_um_us_ng();
+    mpm_bond b = mpm_bond_default(&units);
+    b.rule = (mpm_bond_rule)impact_word("none|energy|strain", c->bond);
+    b.average = (mpm_bond_average)impact_word("mean|weighted|literal", c->bond_average);
+    b.critical = (mpm_real)(b.rule == MPM_BOND_STRAIN ? c->eps_c : c->gc);
+    b.critical_rate = (mpm_real)(b.rule == MPM_BOND_STRAIN ? c->epsdot_c : c->gdot);
+    b.floor = (mpm_real)c->floor;
+    return b;
+}
 
+/* Particle or substrate as a body of its material. */
+static inline mpm_body_desc impact_body(mpm_material *m, const impact_case *c, int body)
+{
+    const double radians = c->angle * 3.14159265358979323846 / 180;
+    const double a = impact_half_width(c), h = impact_half_height(c);
+    mpm_body_desc b = mpm_body_desc_default();
+    b.spacing = (mpm_real)c->spacing;
+    b.shell = (mpm_real)c->shell;
+    b.density = m->density;
+    b.temperature = m->temperature;
+    b.stress = mpm_material_stress;
+    b.material = m;
+    mpm_material_wave_speeds(m, m->density, &b.wave_p, &b.wave_s);
+    if (body == IMPACT_PARTICLE) {
+        b.shape = mpm_ellipsoid(0, 0, (mpm_real)(c->gap + h), (mpm_real)a, (mpm_real)a, (mpm_real)h);
+        b.velocity[0] = (mpm_real)(c->velocity * sin(radians));
+        b.velocity[2] = (mpm_real)(-c->velocity * cos(radians));
+    } else {
+        b.shape = mpm_cylinder(0, 0, (mpm_real)-c->substrate_height, (mpm_real)(c->substrate_diameter / 2),
+                               (mpm_real)c->substrate_height);
+        b.absorb = MPM_BOTTOM | MPM_SIDES;
+    }
+    return b;
+}
+
+/* Builds the scene. Returns 1, or 0 with a message; then nothing is left to free. The world points
+   into *s: do not copy or move it. */
+static inline int impact_begin(impact *s, const impact_case *c, char *message, size_t n)
+{
+    mpm_desc d;
+    mpm_body_desc body[2];
+    mpm_status status;
+    int i;
+    memset(s, 0, sizeof *s);
+    if (!impact_check(c, message, n)) return 0;
+    s->bond = impact_bond(c);
     d = impact_grid(c);
-    d.points = mpm_shape_count(&d, &particle.shape, particle.spacing) +
-               mpm_shape_count(&d, &substrate.shape, substrate.spacing);
+    for (i = 0; i < 2; i++) { /* the substrate last: it leads the normals */
+        if (!impact_metal(&s->material[i], c, i, message, n)) return 0;
+        body[i] = impact_body(&s->material[i], c, i);
+        d.points += mpm_shape_count(&d, &body[i].shape, body[i].spacing);
+    }
     status = mpm_init(&s->world, &d, NULL, 0);
-    if (status == MPM_OK) status = mpm_body_add(&s->world, &particle);
-    if (status == MPM_OK) status = mpm_body_add(&s->world, &substrate); /* last: it leads the normals */
+    for (i = 0; i < 2 && status == MPM_OK; i++) status = mpm_body_add(&s->world, &body[i]);
     if (status != MPM_OK) {
         mpm_io_fault_text(message, n, &s->world.fault);
         mpm_free(&s->world);
         return 0;
     }
-    s->dt = (mpm_real)(c->dt_factor * 0.5) / particle.wave_p;
+    s->dt = (mpm_real)(c->dt_factor * 0.5) / (body[0].wave_p > body[1].wave_p ? body[0].wave_p : body[1].wave_p);
     s->steps = (long)ceil(c->time * 1e-3 / (double)s->dt - 1e-9);
     s->start = mpm_body_totals(&s->world, -1);
     return 1;
 }
 
-/* What came out. */
+/* One whole step with bonding: the loop of examples/impact.c for programs that need not show it.
+   Returns MPM_OK, MPM_RETIRED, or an error with world.fault. */
+static inline mpm_status impact_step(impact *s)
+{
+    mpm_world *w = &s->world;
+    mpm_status status;
+    while ((status = mpm_locate(w)) == MPM_ERR_FULL)
+        if (mpm_grow(w, NULL, 0) < 0) return w->fault.status;
+    if (status < 0) return status;
+    mpm_p2g(w);
+    mpm_forces(w, s->dt);
+    mpm_grid_update(w, s->dt);
+    mpm_contact_find(w);
+    mpm_bond_grow(&s->bond, w, s->dt);
+    mpm_bond_nodes(&s->bond, w);
+    mpm_contact_apply(w, s->dt);
+    mpm_g2p(w, s->dt);
+    mpm_musl(w, s->dt);
+    if (mpm_stress(w, s->dt) < 0) return w->fault.status;
+    mpm_move(w, s->dt);
+    return status;
+}
+
+/* What came out. Velocities are along z (m/s), lengths in um; areas are those of the whole particle. */
 typedef struct impact_result {
-    mpm_bond_measure bond;
+    mpm_bond_measure bond, particle_bond;              /* of both bodies; of the particle alone */
     mpm_rebound rebound;
     mpm_totals particle, substrate, all;
-    double restitution;                                /* filtered rebound / impact velocity */
+    double restitution;                                /* filtered rebound / impact speed */
     double substrate_drift;                            /* mean v_z of the substrate */
-    double flattening;                                 /* 1 - height / diameter */
+    double relative, filtered_relative;                /* rebound less that drift */
+    double tangential;                                 /* mean v_x of the particle */
+    double flattening;                                 /* 1 - height / height at the start */
+    double crater;                                     /* lowest point of the former upper face below it */
+    double contact_area, bonded_area;                  /* see impact_areas */
+    double ejected_fraction;                           /* of the particle's mass, faster than 60 m/s */
     double mass_error, momentum_error, energy_error;   /* relative; energy: kinetic + internal + absorbed */
     double energy_unaccounted;                         /* the same with contact and bond losses */
 } impact_result;
+
+/* Surface of the particle at the start: a spheroid of eccentricity e. */
+static inline double impact_surface(const impact_case *c)
+{
+    const double pi = 3.14159265358979323846, a = impact_half_width(c), h = impact_half_height(c);
+    const double e = sqrt(fabs(1 - (h < a ? h * h / (a * a) : a * a / (h * h))));
+    if (e < 1e-6) return 4 * pi * a * a;
+    if (h < a) return 2 * pi * a * a * (1 + (1 - e * e) / e * atanh(e));
+    return 2 * pi * a * a * (1 + h / (a * e) * asin(e));
+}
+
+/* Contacted (D > 0) and bonded (D >= 1) area of the particle: the share of its surface points, by
+   mass, times its surface at the start. Without bonding D stays 0, and so do the areas. */
+static inline void impact_areas(const impact *s, const impact_case *c, impact_result *r)
+{
+    const mpm_body *b = &s->world.body[IMPACT_PARTICLE];
+    const mpm_points *p = &s->world.points;
+    double mass = 0;
+    int32_t i;
+    for (i = b->first; i < b->first + b->count; i++)
+        if (p->flags[i] & MPM_SURFACE) mass += (double)p->mass[i];
+    if (!(mass > 0)) return;
+    r->contact_area = impact_surface(c) * r->particle_bond.contacted_mass / mass;
+    r->bonded_area = impact_surface(c) * r->particle_bond.bonded_mass / mass;
+}
+
+/* How deep the lowest point of the substrate's former upper face now lies, um. */
+static inline double impact_crater(const impact *s, const impact_case *c)
+{
+    const mpm_body *b = &s->world.body[IMPACT_SUBSTRATE];
+    const mpm_points *p = &s->world.points;
+    double lowest = 0;
+    int32_t i;
+    for (i = b->first; i < b->first + b->active; i++)
+        if ((p->flags[i] & MPM_TOP) && (double)p->x[2][i] < lowest) lowest = (double)p->x[2][i];
+    return -lowest - c->spacing / 2;
+}
 
 static inline impact_result impact_measure(const impact *s, const impact_case *c)
 {
     const mpm_world *w = &s->world;
     const mpm_ledger *l = &w->ledger;
     impact_result r;
-    double energy, momentum = fabs(s->start.momentum[2]);
+    double energy, error = 0, momentum = 0;
+    int a;
+    memset(&r, 0, sizeof r);
     r.bond = mpm_bond_measure_body(w, -1);
+    r.particle_bond = mpm_bond_measure_body(w, IMPACT_PARTICLE);
     r.rebound = mpm_restitution(w, IMPACT_PARTICLE, 60);
     r.particle = mpm_body_totals(w, IMPACT_PARTICLE);
     r.substrate = mpm_body_totals(w, IMPACT_SUBSTRATE);
     r.all = mpm_body_totals(w, -1);
     r.restitution = fabs(c->velocity) > 0 ? r.rebound.filtered / fabs(c->velocity) : 0;
     r.substrate_drift = r.substrate.momentum[2] / r.substrate.mass;
-    r.flattening = 1 - (r.particle.high[2] - r.particle.low[2] + c->spacing) / c->diameter;
+    r.relative = r.rebound.mean - r.substrate_drift;
+    r.filtered_relative = r.rebound.filtered - r.substrate_drift;
+    r.tangential = w->desc.side[0] == MPM_SIDE_SYMMETRY ? 0 : r.particle.momentum[0] / r.particle.mass;
+    r.flattening = 1 - (r.particle.high[2] - r.particle.low[2] + c->spacing) / (2 * impact_half_height(c));
+    r.crater = impact_crater(s, c);
+    impact_areas(s, c, &r);
+    r.ejected_fraction = r.rebound.ejected_mass / r.particle.mass;
     energy = s->start.kinetic + s->start.internal;
     r.mass_error = (r.all.mass - s->start.mass) / s->start.mass;
-    r.momentum_error = (r.all.momentum[2] - s->start.momentum[2] - l->impulse[2]) / (momentum > 0 ? momentum : 1);
+    for (a = 0; a < 3; a++) {
+        error = fmax(error, fabs(r.all.momentum[a] - s->start.momentum[a] - l->impulse[a]));
+        momentum = hypot(momentum, s->start.momentum[a]);
+    }
+    r.momentum_error = error / (momentum > 0 ? momentum : 1);
     r.energy_error = (r.all.kinetic + r.all.internal + l->absorbed - energy) / (energy > 0 ? energy : 1);
     r.energy_unaccounted = r.energy_error + (l->contact + l->bond + l->walls) / (energy > 0 ? energy : 1);
     return r;

@@ -1,7 +1,8 @@
-/* 60_examples - the programs as a person runs them: a short impact, quarter against full, and bad
-   input, which must fail with a message and leave no summary behind. SPDX-License-Identifier: MIT */
+/* 60_examples - the programs as a person runs them: a short impact, quarter against full, oblique,
+   hot, of two metals, of an ellipsoid; the scene they share (impact_case.h); and bad input, which must
+   fail with a message and leave no summary behind. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
-#include "mpm.h"
+#include "impact_case.h"
 #include "check.h"
 
 #include <stdlib.h>
@@ -27,8 +28,8 @@ static double number_in(const char *path, const char *key)
 static int run(const char *options)
 {
     char command[500];
-    snprintf(command, sizeof command, "build/impact --quiet --frames 0 %s >build/tests/impact.out 2>build/tests/impact.err",
-             options);
+    snprintf(command, sizeof command,
+             "build/impact --quiet --frames 0 %s >build/tests/impact.out 2>build/tests/impact.err", options);
     return system(command);
 }
 
@@ -51,6 +52,100 @@ static void refused(const char *options, const char *value)
     CHECK_TRUE("... and no summary", number_in("build/tests/bad/summary.json", "steps") < -1e299);
 }
 
+/* A coarse short impact with further options, into build/tests/NAME; returns its summary. */
+static const char *coarse(const char *name, const char *options)
+{
+    static char path[2][80];
+    static int turn;
+    char line[300];
+    snprintf(line, sizeof line, "--time 1 --spacing 0.75 --out build/tests/%s %s", name, options);
+    CHECK_EQUAL(line, run(line), 0);
+    turn = !turn;
+    snprintf(path[turn], sizeof path[turn], "build/tests/%s/summary.json", name);
+    return path[turn];
+}
+
+/* At 30 degrees from the normal: one mirror plane, momentum conserved along x too. */
+static void oblique(void)
+{
+    const char *half = coarse("half", "--angle 30 --symmetry half");
+    const char *whole = coarse("whole", "--angle 30 --symmetry full");
+    const char *keys[] = {"v_rest_mean_m_s", "v_tangential_m_s", "eps_mean", "contact_area_um2", "crater_depth_um"};
+    int i;
+    CHECK_EQUAL("half: points", number_in(half, "points") * 2, number_in(whole, "points"));
+    for (i = 0; i < 5; i++) CHECK_RELATIVE(keys[i], number_in(half, keys[i]), number_in(whole, keys[i]), 1e-9);
+    CHECK_NEAR("momentum error, all axes", number_in(half, "momentum_error"), 0, 1e-12);
+    CHECK_NEAR("without friction the particle keeps its tangential velocity", number_in(half, "v_tangential_m_s"),
+               405, 0.001 * 405);
+    CHECK_RELATIVE("the other way round", number_in(coarse("left", "--angle -30 --symmetry half"), "v_tangential_m_s"),
+                   -number_in("build/tests/half/summary.json", "v_tangential_m_s"), 1e-9);
+    half = coarse("rough", "--angle 30 --symmetry half --friction 0.5");
+    CHECK_TRUE("friction slows it", number_in(half, "v_tangential_m_s") <
+                                        number_in("build/tests/whole/summary.json", "v_tangential_m_s") - 1);
+    CHECK_NEAR("and hands its momentum on", number_in(half, "momentum_error"), 0, 1e-12);
+}
+
+/* Two metals: each body is of its own, the faster wave sets the step; heat softens. */
+static void metals(void)
+{
+    const char *cu, *al, *hot;
+    al = coarse("al", "");
+    cu = coarse("al_on_cu", "--substrate-material cu");
+    CHECK_TRUE("the denser substrate yields less", number_in(cu, "crater_depth_um") < number_in(al, "crater_depth_um"));
+    CHECK_NEAR("momentum error of two metals", number_in(cu, "momentum_error"), 0, 1e-12);
+    CHECK_NEAR("energy of two metals", number_in(cu, "energy_unaccounted"), 0, 0.03);
+    CHECK_RELATIVE("dt follows the faster wave", number_in(cu, "dt_ns"), number_in(al, "dt_ns"), 1e-12);
+    cu = coarse("cu_on_al", "--material cu --substrate-material al");
+    al = "build/tests/al/summary.json";
+    CHECK_RELATIVE("... whichever body it is in", number_in(cu, "dt_ns"), number_in(al, "dt_ns"), 1e-12);
+    hot = coarse("hot", "--temperature 600 --substrate-temperature 298");
+    CHECK_TRUE("a hot particle is hot", number_in(hot, "temperature_max_K") > 600);
+    CHECK_TRUE("... flattens more", number_in(hot, "flattening") > number_in(al, "flattening"));
+    CHECK_TRUE("... and leaves a shallower crater in a cold substrate",
+               number_in(hot, "crater_depth_um") < number_in(al, "crater_depth_um"));
+    al = coarse("strain", "--bond strain --eps-c 0.5 --bond-average weighted --shell 2 --model ptw");
+    CHECK_TRUE("the strain bond grows", number_in(al, "abp") > 0);
+}
+
+/* The scene without a program: volumes, areas, and a step that is the example's loop. */
+static void scene(void)
+{
+    impact_case c = impact_case_default();
+    impact_result r;
+    char message[300];
+    double ball;
+    impact s;
+    c.spacing = 0.35;
+    CHECK_TRUE("a sphere", impact_begin(&s, &c, message, sizeof message));
+    ball = mpm_body_totals(&s.world, IMPACT_PARTICLE).mass;
+    CHECK_RELATIVE("mass of a quarter", ball, 2.7e-3 * 3.14159265358979 / 24 * 14 * 14 * 14, 0.01);
+    mpm_free(&s.world);
+    CHECK_RELATIVE("surface of a sphere", impact_surface(&c), 3.14159265358979 * 14 * 14, 1e-12);
+    c.shape = "ellipsoid";
+    c.aspect = 0.5;
+    CHECK_TRUE("an ellipsoid", impact_begin(&s, &c, message, sizeof message));
+    CHECK_RELATIVE("of the same volume", mpm_body_totals(&s.world, IMPACT_PARTICLE).mass, ball, 0.01);
+    CHECK_RELATIVE("half as high as wide", impact_half_height(&c) / impact_half_width(&c), 0.5, 1e-12);
+    CHECK_NEAR("resting on the surface", mpm_body_totals(&s.world, IMPACT_PARTICLE).low[2], 0, 0.35);
+    mpm_free(&s.world);
+    c.diameter = 2; /* expected values by quadrature */
+    CHECK_RELATIVE("surface, oblate", impact_surface(&c), 13.765756, 1e-4);
+    c.aspect = 2;
+    CHECK_RELATIVE("surface, prolate", impact_surface(&c), 13.530566, 1e-4);
+    c = impact_case_default();
+    c.spacing = 0.75;
+    c.time = 1;
+    CHECK_TRUE("the scene of a run", impact_begin(&s, &c, message, sizeof message));
+    while (s.world.steps < s.steps)
+        if (impact_step(&s) < 0) break;
+    r = impact_measure(&s, &c);
+    CHECK_EQUAL("impact_step takes the example's steps", s.world.steps,
+                number_in("build/tests/al/summary.json", "steps"));
+    CHECK_RELATIVE("... to the same end", r.rebound.mean, number_in("build/tests/al/summary.json", "v_rest_mean_m_s"),
+                   sizeof(mpm_real) < 8 ? 1e-4 : 1e-9);
+    mpm_free(&s.world);
+}
+
 int main(void)
 {
     const char *q = "build/tests/quarter/summary.json", *f = "build/tests/full/summary.json";
@@ -64,6 +159,9 @@ int main(void)
     CHECK_NEAR("mass error", number_in(q, "mass_error"), 0, 0);
     CHECK_NEAR("momentum error", number_in(q, "momentum_error"), 0, 1e-12);
     CHECK_NEAR("energy unaccounted", number_in(q, "energy_unaccounted"), 0, 0.03);
+    oblique();
+    metals();
+    scene();
     refused("--diameter -14", "-14");
     refused("--velocity nan", "nan");
     refused("--cell 0", "0");
@@ -71,6 +169,18 @@ int main(void)
     refused("--gap -3", "overlap");
     refused("--margin -0.6", "outside");
     refused("--material unobtainium", "unobtainium");
+    refused("--substrate-material unobtainium", "unobtainium");
+    refused("--angle 30", "--symmetry half");
+    refused("--angle 90 --symmetry half", "90");
+    refused("--angle 30 --geometry axisymmetric", "axisymmetric");
+    refused("--aspect 2", "--shape ellipsoid");
+    refused("--shape ellipsoid --aspect 0", "--aspect 0");
+    refused("--temperature 0", "--temperature 0");
+    refused("--substrate-temperature -5", "-5");
+    refused("--model jc", "no published set");
+    refused("--bond strain --eps-c -1", "-1");
+    refused("--bond glue", "glue");
+    refused("--shell 0", "--shell 0");
     refused("--nonsense 1", "--nonsense");
     CHECK_TRUE("unwritable folder", run("--time 1 --out /proc/none") != 0);
     return check_end();

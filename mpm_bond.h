@@ -35,9 +35,18 @@
 #define mpm_bond_check mpm_bond_check_f32
 #define mpm_bond_increment mpm_bond_increment_f32
 #define mpm_bond_grow mpm_bond_grow_f32
+#define mpm_bond_growth mpm_bond_growth_f32
 #define mpm_bond_nodes mpm_bond_nodes_f32
 #define mpm_bond_measure_body mpm_bond_measure_body_f32
+#define mpm_bond_measure_pair mpm_bond_measure_pair_f32
+#define mpm_bond_interface mpm_bond_interface_f32
 #define mpm_restitution mpm_restitution_f32
+#define mpm_restitution_from mpm_restitution_from_f32
+#define mpm_splat_measure mpm_splat_measure_f32
+#define mpm_bonded_fraction mpm_bonded_fraction_f32
+#define mpm_relative_strength mpm_relative_strength_f32
+#define mpm_critical_velocity_2003 mpm_critical_velocity_2003_f32
+#define mpm_critical_velocity_2011 mpm_critical_velocity_2011_f32
 #define mpm_bond_logistic_fit mpm_bond_logistic_fit_f32
 #define mpm_bond_logistic_z mpm_bond_logistic_z_f32
 #define mpm_bond_logistic_theta mpm_bond_logistic_theta_f32
@@ -52,8 +61,17 @@ extern "C" {
 typedef enum mpm_bond_rule {
     MPM_BOND_NONE = 0, /* D stays as it is */
     MPM_BOND_ENERGY,   /* A 4.16, 4.17 */
-    MPM_BOND_STRAIN    /* A 4.3 - 4.5 */
+    MPM_BOND_STRAIN,   /* A 4.3 - 4.5 */
+    MPM_BOND_USER      /* mpm_bond.grow */
 } mpm_bond_rule;
+
+/* A growth rule of your own (the general A 4.1): by how much D of a surface point in contact grew in the
+   last step of dt; everything known of the point is in w->points. What is not > 0 adds nothing. */
+typedef mpm_real (*mpm_bond_fn)(void *context, const mpm_world *w, int32_t point, mpm_real dt);
+
+/* A decision of your own whether a bond holds: the D that a pair gets, whose pair->bond is that of A 4.7.
+   At 1 or more it is held together in separation. */
+typedef mpm_real (*mpm_bond_pair_fn)(void *context, const mpm_world *w, const mpm_pair *pair);
 
 /* The D of a body at a node, from its surface points with N_I > 0 there (A 4.6). */
 typedef enum mpm_bond_average {
@@ -69,6 +87,10 @@ typedef struct mpm_bond {
     mpm_real critical_rate; /* energy rule: Gdot_c [energy/area/time]; strain rule: rate [1/time] */
     mpm_real length;        /* energy rule: regularising length; 0: the cell edge (thesis: DCell) */
     mpm_real floor;         /* least value of the factor 1 - ln(rate/critical rate), > 0 */
+    int partner;            /* user field of the points that remembers the body they bond to, or -1 */
+    mpm_bond_fn grow;       /* the rule of MPM_BOND_USER */
+    mpm_bond_pair_fn decide; /* NULL: A 4.7 decides */
+    void *context;          /* passed to both */
     long floor_hits;        /* how often the floor acted */
     long increments;        /* how often D grew */
 } mpm_bond;
@@ -76,7 +98,8 @@ typedef struct mpm_bond {
 /* The energy rule with the pair of source A, 1503.74 J/m^2 and 2.271e5 J/(m^2 us), floor 0.05. */
 MPM_API mpm_bond mpm_bond_default(const mpm_units *units);
 
-/* MPM_ERR_ARGUMENT / NAN with the field and its value: critical, critical_rate, floor > 0; length >= 0. */
+/* MPM_ERR_ARGUMENT / NAN with the field and its value: critical, critical_rate, floor > 0; length >= 0; with
+   MPM_BOND_USER only a grow that is not NULL; partner -1 or a user field. */
 MPM_API mpm_status mpm_bond_check(const mpm_bond *b, mpm_fault *fault);
 
 /* Growth of D of one point in one step (A 4.3 - 4.5, 4.16, 4.17).
@@ -86,24 +109,55 @@ MPM_API mpm_status mpm_bond_check(const mpm_bond *b, mpm_fault *fault);
    counted. Test: 30_bond. */
 MPM_API mpm_real mpm_bond_increment(mpm_bond *b, mpm_real amount, mpm_real dt);
 
+/* Growth of D of one surface point in contact by what it did in the last step, whatever the rule.
+   Test: 30_bond. */
+MPM_API mpm_real mpm_bond_growth(mpm_bond *b, const mpm_world *w, int32_t point, mpm_real dt);
+
 /* Lets D of the surface points grow by what the last step dissipated, where they are in contact:
-   within the support of a node that carries two bodies. After mpm_contact_find. */
+   within the support of a node that carries two bodies. With b->partner, a user field of the world, the
+   point also remembers the number of the other body + 1; of several, the one with most mass at the contact
+   node nearest to the point. After mpm_contact_find. Test: 30_bond. */
 MPM_API void mpm_bond_grow(mpm_bond *b, mpm_world *w, mpm_real dt);
 
-/* Nodal D into the pairs: the mean over the two bodies of their nodal values (A 4.6, 4.7). A body
-   without surface point at the node counts as 0. After mpm_contact_find. */
+/* Nodal D into the pairs: the mean over the two bodies of their nodal values (A 4.6, 4.7), or what
+   b->decide makes of it. A body without surface point at the node counts as 0. After mpm_contact_find. */
 MPM_API void mpm_bond_nodes(const mpm_bond *b, mpm_world *w);
 
-/* How much of the interface bonded. */
+/* ---- measures ------------------------------------------------------------------------------- */
+
+/* How much of the interface bonded, in surface points. An area is that of the undeformed surface: a point
+   stands for mass / (initial density * spacing), which in a flat face is its share exactly; in a sphere the
+   shell of one spacing adds up to the surface but for spacing/radius. */
 typedef struct mpm_bond_measure {
     long contacted;      /* surface points with D > 0 */
     long bonded;         /* ... with D >= 1 */
     double pbcp;         /* bonded / contacted [%] (A 5.1); 0 without contact */
     double abp;          /* mean D over contacted points */
     double bonded_mass, contacted_mass;
+    double bonded_area, contacted_area; /* [length^2]; in plane strain per depth */
 } mpm_bond_measure;
 
 MPM_API mpm_bond_measure mpm_bond_measure_body(const mpm_world *w, int32_t body); /* body -1: all */
+
+/* The same for the surface between two bodies: points of the one that bonded to the other last. Needs the
+   partner that mpm_bond_grow noted: MPM_ERR_ARGUMENT without such a user field, or for bodies that are not
+   two of the world's. Test: 30_bond. */
+MPM_API mpm_status mpm_bond_measure_pair(const mpm_bond *rule, const mpm_world *w, int32_t a, int32_t b,
+                                         mpm_bond_measure *measure);
+
+/* The interface between two bodies as the grid sees it: the nodes where both have mass, in the last step.
+   The area of a node is the smaller of the bodies' surfaces there, |sum m grad N . n| / initial density:
+   the deformed surface, gaps below a cell included. In a quarter model it is a quarter. */
+typedef struct mpm_interface {
+    long nodes;               /* nodes where both bodies have mass */
+    long bonded;              /* ... whose D is 1 or more */
+    long held;                /* ... where the bond gave force in the last step */
+    double area, bonded_area; /* [length^2] */
+    double impulse[3];        /* momentum that a got from b in the last step */
+} mpm_interface;
+
+/* Between body a and body b (-1: all others). Until the next mpm_locate. Test: 30_bond. */
+MPM_API mpm_interface mpm_bond_interface(const mpm_world *w, int32_t a, int32_t b);
 
 /* The rebound of a body (A 5.2). Ejected points, faster than `filter` in any direction, are left out
    of `filtered` and counted; `mean` is mass-weighted over all points. Along z, retired points included. */
@@ -116,6 +170,52 @@ typedef struct mpm_rebound {
 } mpm_rebound;
 
 MPM_API mpm_rebound mpm_restitution(const mpm_world *w, int32_t body, mpm_real filter);
+
+/* The same relative to another body: velocities less the mass-weighted mean of that body, which drifts
+   where its faces are damped. Test: 30_bond. */
+MPM_API mpm_rebound mpm_restitution_from(const mpm_world *w, int32_t body, int32_t other, mpm_real filter);
+
+/* The shape of a splat: a particle on a substrate whose upper face was flat, along z. Points faster than
+   `filter` are ejected and left out. Extents are those of the points' cubes, half a spacing beyond centres. */
+typedef struct mpm_splat {
+    double height, width; /* of the particle; width: twice the largest distance from its initial axis [length] */
+    double compression;   /* 1 - height / initial height */
+    double flattening;    /* width / initial width */
+    double crater;        /* depth of the deepest point of the upper face below where it was [length] */
+    double rim;           /* height of its highest point above it [length] */
+} mpm_splat;
+
+MPM_API mpm_splat mpm_splat_measure(const mpm_world *w, int32_t particle, int32_t substrate, mpm_real filter);
+
+/* ---- estimates from the literature ------------------------------------------------------------ */
+
+/* The terms of Shorshorov and Kharlamov's rates, in SI units: lattice frequency [1/s] > 0, contact time [s]
+   >= 0, activation energy of a bond [J] >= 0, contact temperature [K] > 0, atomic mass [kg], particle velocity
+   [m/s]. */
+typedef struct mpm_activation {
+    double frequency, time, energy, temperature, atom_mass, velocity;
+} mpm_activation;
+
+/* Share of atoms that bond, 1 - exp(-nu t_c exp(-E_a / (k T_c + (1 - e_r) m v^2/2))) (A 2.10). recoil: e_r,
+   here the share of the kinetic energy that elastic recoil gives back, the square of the velocity ratio, in
+   [0, 1]. Times the energy of a full contact, area * atoms per area * bond energy, it is the adhesion energy. */
+MPM_API double mpm_bonded_fraction(const mpm_activation *a, double recoil);
+
+/* Bond strength as a share of the full one, 1 - exp(-nu t_c exp(-E_a / (a_1 k T_c + a_2 m v^2/2))) (A 2.11);
+   inner, kinetic: a_1 and a_2, the utilised shares of internal and kinetic energy. Test: 30_bond. */
+MPM_API double mpm_relative_strength(const mpm_activation *a, double inner, double kinetic);
+
+/* Critical velocity [m/s] of Assadi, Gaertner, Stoltenhoff, Kreye, Acta Mater. 51 (2003) 4379:
+   667 - 14 rho + 0.08 T_m + 0.1 sigma_u - 0.4 T_i with density in g/cm^3, melting and initial temperature in
+   deg C, tensile strength in MPa. Fitted around copper. Test: 30_bond. */
+MPM_API double mpm_critical_velocity_2003(double density_g_cm3, double melt_C, double strength_MPa, double initial_C);
+
+/* Critical velocity [m/s] of Assadi et al., J. Therm. Spray Technol. 20 (2011) 1161:
+   k sqrt(c_p (T_m - T_p) + 16 (sigma_u/rho) (T_m - T_p)/(T_m - 293 K)), k = 0.64 (d/10 um)^-0.18.
+   diameter [um] > 0, specific heat [J/(kg K)], melting and particle temperature [K], tensile strength at
+   293 K [Pa], density [kg/m^3] > 0; T_m > 293 K. 0 for a molten particle. Test: 30_bond. */
+MPM_API double mpm_critical_velocity_2011(double diameter_um, double specific_heat, double melt_K, double particle_K,
+                                          double strength_Pa, double density);
 
 /* ---- calibration ---------------------------------------------------------------------------- */
 
@@ -188,13 +288,16 @@ MPM_API mpm_bond mpm_bond_default(const mpm_units *u)
     b.critical = (mpm_real)(1503.74 / mpm_units_area_energy(u));
     b.critical_rate = (mpm_real)(2.271e11 / (mpm_units_area_energy(u) / u->time));
     b.floor = MPM_R(0.05);
+    b.partner = -1;
     return b;
 }
 
 MPM_API mpm_status mpm_bond_check(const mpm_bond *b, mpm_fault *f)
 {
     mpm_status s;
-    if (b->rule == MPM_BOND_NONE) return MPM_OK;
+    s = mpm__want(b->partner >= -1 && b->partner < MPM_USER_FIELDS, f, "bond partner", (mpm_real)b->partner, -1);
+    if (s != MPM_OK || b->rule == MPM_BOND_NONE) return s;
+    if (b->rule == MPM_BOND_USER) return mpm__want(b->grow != NULL, f, "bond grow", 0, -1);
     if ((s = mpm__want(b->critical > 0, f, "bond critical", b->critical, -1)) != MPM_OK) return s;
     if ((s = mpm__want(b->critical_rate > 0, f, "bond critical_rate", b->critical_rate, -1)) != MPM_OK) return s;
     if ((s = mpm__want(b->floor > 0, f, "bond floor", b->floor, -1)) != MPM_OK) return s;
@@ -223,6 +326,31 @@ static inline mpm_real mpm__von_mises(const mpm_points *q, int32_t i)
     return mpm__sqrt(d / 2 + 3 * (yz * yz + xz * xz + xy * xy));
 }
 
+MPM_API mpm_real mpm_bond_growth(mpm_bond *b, const mpm_world *w, int32_t i, mpm_real dt)
+{
+    mpm_real amount;
+    if (b->rule == MPM_BOND_NONE) return 0;
+    if (b->rule == MPM_BOND_USER) {
+        amount = b->grow(b->context, w, i, dt);
+        if (!(amount > 0)) return 0;
+        b->increments++;
+        return amount;
+    }
+    amount = w->points.plastic_rate[i] * dt;
+    if (b->rule == MPM_BOND_ENERGY)
+        amount *= mpm__von_mises(&w->points, i) * (b->length > 0 ? b->length : w->desc.cell);
+    return mpm_bond_increment(b, amount, dt);
+}
+
+/* The body other than `body` with most mass at a contact node. */
+static inline int32_t mpm__partner(const mpm_world *w, const mpm_node *node, int32_t body)
+{
+    int32_t n, best = -1;
+    for (n = w->head[node->index]; n >= 0; n = w->node[n].next)
+        if (w->node[n].body != body && (best < 0 || w->node[n].mass > w->node[best].mass)) best = n;
+    return best < 0 ? -1 : w->node[best].body;
+}
+
 /* The surface points of a run in contact: with `grow` their D grows, with `nodes` it is added to the
    contact nodes around them. */
 MPM__KERNEL void mpm__bond_run(mpm_bond *grow, const mpm_bond *nodes, mpm_world *w, const mpm_run *r, int k, int ky,
@@ -230,7 +358,8 @@ MPM__KERNEL void mpm__bond_run(mpm_bond *grow, const mpm_bond *nodes, mpm_world 
 {
     mpm_points *q = &w->points;
     const int32_t *slot = mpm__run_nodes(w, r);
-    mpm_real N[MPM__SUPPORT];
+    const int noted = grow && grow->partner >= 0 && grow->partner < w->desc.user_fields;
+    mpm_real *partner = noted ? q->user[grow->partner] : NULL, N[MPM__SUPPORT];
     mpm__weights s;
     int32_t at;
     int n, p, a;
@@ -239,22 +368,22 @@ MPM__KERNEL void mpm__bond_run(mpm_bond *grow, const mpm_bond *nodes, mpm_world 
         mpm__weigh(w, r, at, n, k, ky, &s);
         for (p = 0; p < n; p++) {
             const int32_t i = at + p;
-            int touching = 0;
+            int nearest = -1;
             if (!(q->flags[i] & MPM_SURFACE)) continue;
             mpm__products(&s, p, k, ky, N);
             for (a = 0; a < k * ky * k; a++) {
                 mpm_node *node = &w->node[slot[a]];
                 if (!(node->sides & MPM_NODE_CONTACT) || !(N[a] > 0)) continue;
-                touching = 1;
+                if (nearest < 0 || N[a] > N[nearest]) nearest = a;
                 if (!nodes) continue;
                 node->bond[0] += nodes->average == MPM_BOND_MEAN ? q->bond[i] : q->bond[i] * N[a];
                 node->bond[1] += nodes->average == MPM_BOND_WEIGHTED ? N[a] : 1;
             }
-            if (grow && touching && q->plastic_rate[i] > 0) {
-                mpm_real amount = q->plastic_rate[i] * dt;
-                if (grow->rule == MPM_BOND_ENERGY)
-                    amount *= mpm__von_mises(q, i) * (grow->length > 0 ? grow->length : w->desc.cell);
-                q->bond[i] += mpm_bond_increment(grow, amount, dt);
+            if (grow && nearest >= 0) {
+                const mpm_real growth = mpm_bond_growth(grow, w, i, dt);
+                q->bond[i] += growth;
+                if (partner && growth > 0)
+                    partner[i] = (mpm_real)(1 + mpm__partner(w, &w->node[slot[nearest]], r->body));
             }
         }
     }
@@ -278,34 +407,98 @@ MPM_API void mpm_bond_nodes(const mpm_bond *b, mpm_world *w)
     for (i = 0; i < w->pairs; i++) {
         const mpm_real *a = w->node[w->pair[i].a].bond, *c = w->node[w->pair[i].b].bond;
         w->pair[i].bond = ((a[1] > 0 ? a[0] / a[1] : 0) + (c[1] > 0 ? c[0] / c[1] : 0)) / 2;
+        if (b->decide) w->pair[i].bond = b->decide(b->context, w, &w->pair[i]);
     }
+}
+
+/* ---- measures ------------------------------------------------------------------------------- */
+
+/* Adds the contacted surface points of a body, all or those whose partner is `other`. */
+static inline void mpm__measure_add(const mpm_world *w, int32_t body, const mpm_real *partner, int32_t other,
+                                    mpm_bond_measure *m)
+{
+    const mpm_points *q = &w->points;
+    const mpm_body *b = &w->body[body];
+    const double column = (double)(b->desc.density * b->desc.spacing);
+    int32_t i;
+    for (i = b->first; i < b->first + b->count; i++) {
+        const double mass = (double)q->mass[i];
+        if (!(q->flags[i] & MPM_SURFACE) || !(q->bond[i] > 0)) continue;
+        if (partner && (int32_t)partner[i] != other + 1) continue;
+        m->contacted++;
+        m->contacted_mass += mass;
+        m->contacted_area += mass / column;
+        m->abp += (double)q->bond[i];
+        if (q->bond[i] < 1) continue;
+        m->bonded++;
+        m->bonded_mass += mass;
+        m->bonded_area += mass / column;
+    }
+}
+
+/* Sums to means. */
+static inline void mpm__measure_end(mpm_bond_measure *m)
+{
+    if (!m->contacted) return;
+    m->pbcp = 100.0 * (double)m->bonded / (double)m->contacted;
+    m->abp /= (double)m->contacted;
 }
 
 MPM_API mpm_bond_measure mpm_bond_measure_body(const mpm_world *w, int32_t body)
 {
-    const mpm_points *q = &w->points;
     const int32_t from = body < 0 ? 0 : body, to = body < 0 ? w->bodies : body + 1;
     mpm_bond_measure m;
-    int32_t b, i;
+    int32_t b;
     memset(&m, 0, sizeof m);
-    for (b = from; b < to; b++)
-        for (i = w->body[b].first; i < w->body[b].first + w->body[b].count; i++) {
-            if (!(q->flags[i] & MPM_SURFACE) || !(q->bond[i] > 0)) continue;
-            m.contacted++;
-            m.contacted_mass += (double)q->mass[i];
-            m.abp += (double)q->bond[i];
-            if (q->bond[i] < 1) continue;
-            m.bonded++;
-            m.bonded_mass += (double)q->mass[i];
-        }
-    if (m.contacted) {
-        m.pbcp = 100.0 * (double)m.bonded / (double)m.contacted;
-        m.abp /= (double)m.contacted;
-    }
+    for (b = from; b < to; b++) mpm__measure_add(w, b, NULL, 0, &m);
+    mpm__measure_end(&m);
     return m;
 }
 
-MPM_API mpm_rebound mpm_restitution(const mpm_world *w, int32_t body, mpm_real filter)
+MPM_API mpm_status mpm_bond_measure_pair(const mpm_bond *rule, const mpm_world *w, int32_t a, int32_t b,
+                                         mpm_bond_measure *m)
+{
+    memset(m, 0, sizeof *m);
+    if (rule->partner < 0 || rule->partner >= w->desc.user_fields) return MPM_ERR_ARGUMENT;
+    if (a < 0 || b < 0 || a >= w->bodies || b >= w->bodies || a == b) return MPM_ERR_ARGUMENT;
+    mpm__measure_add(w, a, w->points.user[rule->partner], b, m);
+    mpm__measure_add(w, b, w->points.user[rule->partner], a, m);
+    mpm__measure_end(m);
+    return MPM_OK;
+}
+
+MPM_API mpm_interface mpm_bond_interface(const mpm_world *w, int32_t a, int32_t b)
+{
+    mpm_interface f;
+    int32_t i;
+    int d;
+    memset(&f, 0, sizeof f);
+    for (i = 0; i < w->pairs; i++) {
+        const mpm_pair *pair = &w->pair[i];
+        const mpm_node *low = &w->node[pair->a], *high = &w->node[pair->b];
+        const int forward = low->body == a && (b < 0 || high->body == b);
+        const int backward = high->body == a && (b < 0 || low->body == b);
+        double one = 0, two = 0;
+        if (!forward && !backward) continue;
+        for (d = 0; d < 3; d++) {
+            one += (double)(low->gradient[d] * pair->normal[d] / w->body[low->body].desc.density);
+            two -= (double)(high->gradient[d] * pair->normal[d] / w->body[high->body].desc.density);
+            f.impulse[d] += (double)(forward ? pair->impulse[d] : -pair->impulse[d]);
+        }
+        if (two < one) one = two;
+        if (one < 0) one = 0;
+        f.nodes++;
+        f.held += pair->held;
+        f.area += one;
+        if (pair->bond < 1) continue;
+        f.bonded++;
+        f.bonded_area += one;
+    }
+    return f;
+}
+
+/* The rebound seen from a frame that moves with `frame`. */
+static inline mpm_rebound mpm__rebound(const mpm_world *w, int32_t body, const double *frame, mpm_real filter)
 {
     const mpm_points *q = &w->points;
     const mpm_body *b = &w->body[body];
@@ -314,11 +507,11 @@ MPM_API mpm_rebound mpm_restitution(const mpm_world *w, int32_t body, mpm_real f
     int32_t i;
     memset(&r, 0, sizeof r);
     for (i = b->first; i < b->first + b->count; i++) {
-        const double m = (double)q->mass[i], vz = (double)q->v[2][i];
-        const mpm_real v2 = q->v[0][i] * q->v[0][i] + q->v[1][i] * q->v[1][i] + q->v[2][i] * q->v[2][i];
+        const double m = (double)q->mass[i], vx = (double)q->v[0][i] - frame[0];
+        const double vy = (double)q->v[1][i] - frame[1], vz = (double)q->v[2][i] - frame[2];
         mass += m;
         r.mean += m * vz;
-        if (v2 > filter * filter) {
+        if (vx * vx + vy * vy + vz * vz > (double)filter * (double)filter) {
             r.ejected++;
             r.ejected_mass += m;
         } else {
@@ -334,6 +527,93 @@ MPM_API mpm_rebound mpm_restitution(const mpm_world *w, int32_t body, mpm_real f
         r.noise = square > 0 ? sqrt(square) : 0;
     }
     return r;
+}
+
+MPM_API mpm_rebound mpm_restitution(const mpm_world *w, int32_t body, mpm_real filter)
+{
+    const double rest[3] = {0, 0, 0};
+    return mpm__rebound(w, body, rest, filter);
+}
+
+MPM_API mpm_rebound mpm_restitution_from(const mpm_world *w, int32_t body, int32_t other, mpm_real filter)
+{
+    const mpm_totals t = mpm_body_totals(w, other);
+    double frame[3];
+    int d;
+    for (d = 0; d < 3; d++) frame[d] = t.mass > 0 ? t.momentum[d] / t.mass : 0;
+    return mpm__rebound(w, body, frame, filter);
+}
+
+/* 1 if a point is slower than `filter`. */
+static inline int mpm__slow(const mpm_points *q, int32_t i, mpm_real filter)
+{
+    return q->v[0][i] * q->v[0][i] + q->v[1][i] * q->v[1][i] + q->v[2][i] * q->v[2][i] <= filter * filter;
+}
+
+MPM_API mpm_splat mpm_splat_measure(const mpm_world *w, int32_t particle, int32_t substrate, mpm_real filter)
+{
+    const mpm_points *q = &w->points;
+    const mpm_body *b = &w->body[particle], *s = &w->body[substrate];
+    const mpm_shape *ball = &b->desc.shape, *slab = &s->desc.shape;
+    const double face = (double)(slab->center[2] + slab->half[2] - s->desc.spacing / 2);
+    double low = 0, high = 0, radius = 0;
+    mpm_splat r;
+    int32_t i;
+    int first = 1;
+    memset(&r, 0, sizeof r);
+    for (i = b->first; i < b->first + b->active; i++) {
+        const double x = (double)(q->x[0][i] - ball->center[0]), z = (double)q->x[2][i];
+        const double y = mpm__flat(&w->desc) ? 0 : (double)(q->x[1][i] - ball->center[1]);
+        if (!mpm__slow(q, i, filter)) continue;
+        if (first || z < low) low = z;
+        if (first || z > high) high = z;
+        if (x * x + y * y > radius) radius = x * x + y * y;
+        first = 0;
+    }
+    if (!first) {
+        r.height = high - low + (double)b->desc.spacing;
+        r.width = 2 * sqrt(radius) + (double)b->desc.spacing;
+        r.compression = 1 - r.height / (double)(2 * ball->half[2]);
+        r.flattening = r.width / (double)(2 * ball->half[0]);
+    }
+    for (i = s->first; i < s->first + s->active; i++) {
+        const double rise = (double)q->x[2][i] - face;
+        if (!(q->flags[i] & MPM_TOP) || !mpm__slow(q, i, filter)) continue;
+        if (-rise > r.crater) r.crater = -rise;
+        if (rise > r.rim) r.rim = rise;
+    }
+    return r;
+}
+
+/* ---- estimates from the literature ------------------------------------------------------------ */
+
+/* 1 - exp(-nu t exp(-E/(inner k T + kinetic m v^2/2))); expm1 keeps the digits of small shares. */
+static inline double mpm__activated(const mpm_activation *a, double inner, double kinetic)
+{
+    const double heat = 1.380649e-23 * a->temperature; /* k in J/K, exact in SI */
+    const double motion = a->atom_mass * a->velocity * a->velocity / 2;
+    return -expm1(-a->frequency * a->time * exp(-a->energy / (inner * heat + kinetic * motion)));
+}
+
+MPM_API double mpm_bonded_fraction(const mpm_activation *a, double recoil) { return mpm__activated(a, 1, 1 - recoil); }
+
+MPM_API double mpm_relative_strength(const mpm_activation *a, double inner, double kinetic)
+{
+    return mpm__activated(a, inner, kinetic);
+}
+
+MPM_API double mpm_critical_velocity_2003(double density_g_cm3, double melt_C, double strength_MPa, double initial_C)
+{
+    return 667 - 14 * density_g_cm3 + 0.08 * melt_C + 0.1 * strength_MPa - 0.4 * initial_C;
+}
+
+MPM_API double mpm_critical_velocity_2011(double diameter_um, double specific_heat, double melt_K, double particle_K,
+                                          double strength_Pa, double density)
+{
+    const double below = melt_K - particle_K; /* the melting point */
+    if (!(below > 0)) return 0;
+    return 0.64 * pow(diameter_um / 10, -0.18) *
+           sqrt(specific_heat * below + 16 * (strength_Pa / density) * below / (melt_K - 293));
 }
 
 /* ---- calibration ---------------------------------------------------------------------------- */

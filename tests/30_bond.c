@@ -1,4 +1,4 @@
-/* 30_bond - growth of D against the law, its limits, and the nodal averages.
+/* 30_bond - growth of D against the law, its limits, rules of one's own, nodal averages, measures, estimates.
    SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "scene.h"
@@ -64,6 +64,299 @@ static void averages(void)
     mpm_free(&w);
 }
 
+/* A cube of 4 um lies on a slab, both at rest; D grows under the state given by hand. */
+static mpm_world cube_on_slab(mpm_material *m, int fields)
+{
+    mpm_desc d = scene_grid(1, 12, 12, 12, -6, -6, -6);
+    mpm_body_desc cube = scene_body(m, mpm_box(-2, -2, 0, 2, 2, 4), 0.5, 0);
+    mpm_body_desc slab = scene_body(m, mpm_box(-5, -5, -4, 5, 5, 0), 0.5, 0);
+    mpm_world w;
+    d.user_fields = fields;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &cube);
+    mpm_body_add(&w, &slab);
+    return w;
+}
+
+static void find_contact(mpm_world *w)
+{
+    mpm_locate(w);
+    mpm_p2g(w);
+    mpm_contact_find(w);
+}
+
+/* The cube's face (64 points) and the slab's points under it and one cell around (12 x 12) touch; all
+   flow plastically at 425 / us under 200 MPa, one point backwards. */
+static void state_by_hand(mpm_world *w)
+{
+    int32_t i;
+    for (i = 0; i < w->points.count; i++) {
+        w->points.plastic_rate[i] = 425;
+        w->points.stress[2][i] = -150;
+        w->points.stress[0][i] = w->points.stress[1][i] = 50; /* von Mises 200 */
+    }
+}
+
+static mpm_real tenth(void *context, const mpm_world *w, int32_t point, mpm_real dt)
+{
+    long *calls = (long *)context;
+    (void)dt;
+    ++*calls;
+    return w->points.x[0][point] > 0 ? MPM_R(0.1) : MPM_R(-0.1);
+}
+
+static mpm_real never(void *context, const mpm_world *w, const mpm_pair *pair)
+{
+    (void)context;
+    return w->node[pair->a].mass > 0 ? pair->bond / 1000 : 2;
+}
+
+static void rules(void)
+{
+    mpm_units u = mpm_units_um_us_ng();
+    mpm_material m = scene_metal(1, u);
+    mpm_bond b = mpm_bond_default(&u);
+    mpm_world w = cube_on_slab(&m, 0);
+    mpm_points *p = &w.points;
+    const mpm_real dt = MPM_R(8e-6);
+    long calls = 0, grown = 0, lower = 0, i;
+    mpm_real top = 0;
+    state_by_hand(&w);
+    find_contact(&w);
+
+    b.rule = MPM_BOND_STRAIN; /* d_eps = 425 * 8e-6 = 0.0034; eps_b = 1.4 (1 + ln 2) = 2.370406 */
+    b.critical = MPM_R(1.4);
+    b.critical_rate = 850;
+    mpm_bond_grow(&b, &w, dt);
+    for (i = 0; i < p->count; i++) {
+        const int touches = i < w.body[1].first ? p->x[2][i] < 1 : p->x[2][i] > -1;
+        grown += p->bond[i] > 0;
+        if (p->bond[i] > 0 && !touches) lower++;
+        if (p->bond[i] > top) top = p->bond[i];
+    }
+    CHECK_RELATIVE("strain rule, A 4.3 - 4.5", top, 0.001434354, 1e-6);
+    CHECK_EQUAL("surface points in contact grow", grown, b.increments);
+    CHECK_EQUAL("... all near the interface", lower, 0);
+    /* the face: 8 x 8; the walls' next layer, within the cell: 28; the slab: 12 x 12 */
+    CHECK_EQUAL("... 64 of the face, 28 above, 144 of the slab", grown, 64 + 28 + 144);
+
+    for (i = 0; i < p->count; i++) p->bond[i] = 0;
+    b = mpm_bond_default(&u); /* dG = 200 * 0.0034 * 1 um = 0.68 J/m2; x = 0.68/(2.271e5 * 8e-6) = 0.3742845 */
+    CHECK_RELATIVE("energy rule, A 4.16, 4.17", mpm_bond_growth(&b, &w, 0, dt),
+                   0.68 / (1503.74 * (1 + 0.98273908)), 1e-6);
+    b.length = 2;
+    CHECK_RELATIVE("... its length in place of the cell", mpm_bond_growth(&b, &w, 0, dt),
+                   1.36 / (1503.74 * (1 + 0.28959190)), 1e-6);
+
+    b.rule = MPM_BOND_USER;
+    CHECK_EQUAL("a rule of one's own must be given", mpm_bond_check(&b, NULL), MPM_ERR_ARGUMENT);
+    b.grow = tenth;
+    b.context = &calls;
+    CHECK_EQUAL("... then needs no constants", mpm_bond_check(&b, NULL), MPM_OK);
+    b.increments = 0;
+    mpm_bond_grow(&b, &w, dt);
+    mpm_bond_grow(&b, &w, dt);
+    for (i = 0, lower = 0, top = 0; i < p->count; i++) {
+        if (p->bond[i] > top) top = p->bond[i];
+        lower += p->bond[i] < 0;
+    }
+    CHECK_EQUAL("... is asked for each point in contact", calls, 2 * grown);
+    CHECK_EQUAL("... and counted where D grew", b.increments, grown);
+    CHECK_RELATIVE("... D is its sum", top, 0.2, 4 * eps);
+    CHECK_EQUAL("... D never falls", lower, 0);
+
+    for (i = 0; i < p->count; i++) p->bond[i] = MPM_R(1.5);
+    mpm_bond_nodes(&b, &w);
+    CHECK_RELATIVE("A 4.7 decides", w.pair[0].bond, 1.5, 4 * eps);
+    b.decide = never;
+    find_contact(&w);
+    mpm_bond_nodes(&b, &w);
+    CHECK_RELATIVE("or a decision of one's own, told A 4.7", w.pair[0].bond, 0.0015, 4 * eps);
+    b.partner = MPM_USER_FIELDS;
+    CHECK_EQUAL("a partner field beyond the user fields", mpm_bond_check(&b, NULL), MPM_ERR_ARGUMENT);
+    mpm_free(&w);
+}
+
+/* The interface of a 4 um cube on a slab is 16 um2, of which the half x > 0 is bonded by hand. */
+static void interface(void)
+{
+    mpm_units u = mpm_units_um_us_ng();
+    mpm_material m = scene_metal(1, u);
+    mpm_bond b = mpm_bond_default(&u);
+    mpm_world w = cube_on_slab(&m, 1);
+    mpm_bond_measure measure;
+    mpm_interface f, back;
+    const mpm_real dt = MPM_R(1e-5);
+    int32_t i;
+    b.partner = 0;
+    for (i = 0; i < w.points.count; i++) {
+        w.points.bond[i] = w.points.x[0][i] > 0 ? MPM_R(2.0) : 0;
+        if (i < w.body[1].first) w.points.v[2][i] = 3;
+    }
+    find_contact(&w);
+    mpm_bond_nodes(&b, &w);
+    mpm_contact_apply(&w, dt);
+    f = mpm_bond_interface(&w, 0, 1);
+    back = mpm_bond_interface(&w, 1, 0);
+    CHECK_EQUAL("nodes of the interface", f.nodes, 25);
+    CHECK_EQUAL("... with D >= 1: mean at x = 0 is 1", f.bonded, 15);
+    CHECK_EQUAL("... all held, for the cube leaves", f.held, 15);
+    CHECK_RELATIVE("area of the face", f.area, 16, 64 * eps);
+    CHECK_RELATIVE("... of its bonded nodes: 2.5 of 4", f.bonded_area, 10, 64 * eps);
+    CHECK_TRUE("the bond pulls the cube down", f.impulse[2] < 0);
+    CHECK_NEAR("... and the slab up", back.impulse[2], -f.impulse[2], 0);
+    CHECK_EQUAL("a body meets itself nowhere", mpm_bond_interface(&w, 0, 0).nodes, 0);
+    CHECK_EQUAL("-1: all others", mpm_bond_interface(&w, 0, -1).nodes, 25);
+
+    state_by_hand(&w);
+    for (i = 0; i < w.points.count; i++) w.points.bond[i] = 0;
+    b.rule = MPM_BOND_STRAIN;
+    b.critical = MPM_R(0.001);
+    b.critical_rate = 1000;
+    mpm_bond_grow(&b, &w, dt);
+    CHECK_EQUAL("measure of a pair", mpm_bond_measure_pair(&b, &w, 0, 1, &measure), MPM_OK);
+    CHECK_EQUAL("... counts both bodies' points", measure.contacted, 64 + 28 + 144);
+    CHECK_RELATIVE("... PBCP", measure.pbcp, 100, 4 * eps);
+    CHECK_RELATIVE("... area a quarter um2 each", measure.bonded_area, (64 + 28 + 144) * 0.25, 64 * eps);
+    for (i = 0; i < w.points.count; i++)
+        if (w.points.x[0][i] > 0) w.points.user[0][i] = 9;
+    mpm_bond_measure_pair(&b, &w, 1, 0, &measure);
+    CHECK_EQUAL("... only of that pair", measure.contacted, (64 + 28 + 144) / 2);
+    CHECK_EQUAL("a pair is two bodies", mpm_bond_measure_pair(&b, &w, 1, 1, &measure), MPM_ERR_ARGUMENT);
+    b.partner = -1;
+    CHECK_EQUAL("without partner no pairs", mpm_bond_measure_pair(&b, &w, 0, 1, &measure), MPM_ERR_ARGUMENT);
+    mpm_free(&w);
+}
+
+static mpm_real quarter(void *context, const mpm_world *w, int32_t point, mpm_real dt)
+{
+    (void)context;
+    (void)w;
+    (void)point;
+    (void)dt;
+    return MPM_R(0.25);
+}
+
+/* The point of a body at (x, 0.25, z). */
+static int32_t point_at(const mpm_world *w, int32_t body, double x, double z)
+{
+    const mpm_points *p = &w->points;
+    int32_t i;
+    for (i = w->body[body].first; i < w->body[body].first + w->body[body].count; i++)
+        if (fabs((double)p->x[0][i] - x) + fabs((double)p->x[1][i] - 0.25) + fabs((double)p->x[2][i] - z) < 0.01) break;
+    return i;
+}
+
+/* Two cubes side by side on one slab: each bonds to the slab, and to its neighbour where they touch. */
+static void partners(void)
+{
+    mpm_units u = mpm_units_um_us_ng();
+    mpm_material m = scene_metal(1, u);
+    mpm_desc d = scene_grid(1, 12, 12, 12, -6, -6, -6);
+    mpm_body_desc left = scene_body(&m, mpm_box(-4, -2, 0, 0, 2, 4), 0.5, 0);
+    mpm_body_desc right = scene_body(&m, mpm_box(0, -2, 0, 4, 2, 4), 0.5, 0);
+    mpm_body_desc slab = scene_body(&m, mpm_box(-5, -5, -4, 5, 5, 0), 0.5, 0);
+    mpm_bond b = mpm_bond_default(&u);
+    mpm_bond_measure both, one, two;
+    mpm_world w;
+    d.user_fields = 2;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &left);
+    mpm_body_add(&w, &right);
+    mpm_body_add(&w, &slab);
+    b.rule = MPM_BOND_USER;
+    b.grow = quarter;
+    b.partner = 1;
+    find_contact(&w);
+    mpm_bond_grow(&b, &w, MPM_R(1e-5));
+    CHECK_EQUAL("on the slab: partner the slab", w.points.user[1][point_at(&w, 0, -2.75, 0.25)], 3);
+    CHECK_EQUAL("beside the neighbour: partner the neighbour", w.points.user[1][point_at(&w, 0, -0.25, 2.25)], 2);
+    CHECK_EQUAL("under the right cube: partner that", w.points.user[1][point_at(&w, 2, 2.25, -0.25)], 2);
+    CHECK_EQUAL("under the left cube: partner that", w.points.user[1][point_at(&w, 2, -2.25, -0.25)], 1);
+    CHECK_EQUAL("touching nothing: none", w.points.user[1][point_at(&w, 0, -3.75, 3.75)], 0);
+    mpm_bond_measure_pair(&b, &w, 0, 1, &both);
+    mpm_bond_measure_pair(&b, &w, 0, 2, &one);
+    mpm_bond_measure_pair(&b, &w, 1, 2, &two);
+    CHECK_TRUE("left and slab, left and right", one.contacted > 64 && both.contacted > 64);
+    CHECK_NEAR("mean D of a pair", both.abp, 0.25, 4 * eps);
+    CHECK_EQUAL("every grown point has one partner", both.contacted + one.contacted + two.contacted,
+                mpm_bond_measure_body(&w, -1).contacted);
+    mpm_free(&w);
+}
+
+/* A ball of 4 um on a slab of which points are moved by hand. */
+static void splats(void)
+{
+    mpm_units u = mpm_units_um_us_ng();
+    mpm_material m = scene_metal(1, u);
+    mpm_desc d = scene_grid(1, 12, 12, 12, -6, -6, -6);
+    mpm_body_desc ball = scene_body(&m, mpm_box(-2, -2, 0, 2, 2, 4), 0.5, 12);
+    mpm_body_desc slab = scene_body(&m, mpm_box(-5, -5, -4, 5, 5, 0), 0.5, 2);
+    mpm_rebound r;
+    mpm_splat s;
+    mpm_world w;
+    int32_t i;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &ball);
+    mpm_body_add(&w, &slab);
+    s = mpm_splat_measure(&w, 0, 1, 60);
+    CHECK_RELATIVE("a cube as it was: height", s.height, 4, 8 * eps);
+    CHECK_NEAR("... compression", s.compression, 0, 8 * eps);
+    CHECK_NEAR("... crater", s.crater, 0, 16 * eps);
+    for (i = 0; i < w.body[0].count; i++) { /* three quarters of the height, twice the width */
+        w.points.x[2][i] *= MPM_R(0.75);
+        w.points.x[0][i] *= 2;
+        w.points.x[1][i] = 0;
+    }
+    w.points.x[2][0] = 5; /* ejected */
+    w.points.v[0][0] = 61;
+    for (i = w.body[1].first; i < w.points.count; i++) {
+        if (!(w.points.flags[i] & MPM_TOP)) continue;
+        if (w.points.x[0][i] < -4) w.points.x[2][i] += MPM_R(0.25);
+        else w.points.x[2][i] -= MPM_R(1.5);
+    }
+    s = mpm_splat_measure(&w, 0, 1, 60);
+    CHECK_RELATIVE("height: 0.75 * 3.5 + 0.5", s.height, 3.125, 16 * eps);
+    CHECK_RELATIVE("compression", s.compression, 1 - 3.125 / 4, 64 * eps);
+    CHECK_RELATIVE("width: 2 * 3.5 + 0.5, twice the lattice's", s.width, 7.5, 16 * eps);
+    CHECK_RELATIVE("flattening", s.flattening, 7.5 / 4, 16 * eps);
+    CHECK_RELATIVE("crater", s.crater, 1.5, 64 * eps);
+    CHECK_RELATIVE("rim", s.rim, 0.25, 256 * eps);
+    r = mpm_restitution(&w, 0, 60);
+    CHECK_RELATIVE("rebound as seen from the ground", r.filtered, 12, 100 * eps);
+    r = mpm_restitution_from(&w, 0, 1, 60);
+    CHECK_RELATIVE("... from the moving slab", r.filtered, 10, 100 * eps);
+    CHECK_EQUAL("... one point ejected", r.ejected, 1);
+    CHECK_RELATIVE("... of its mass", r.ejected_mass, w.points.mass[0], 4 * eps);
+    mpm_free(&w);
+}
+
+/* Against the formulas evaluated with 30 digits outside this program. */
+static void literature(void)
+{
+    mpm_activation a;
+    a.frequency = 1e13;
+    a.time = 5e-8;
+    a.energy = 3 * 1.602176634e-19;
+    a.temperature = 900;
+    a.atom_mass = 4.4804e-26;
+    a.velocity = 810;
+    CHECK_RELATIVE("bonded fraction (A 2.10)", mpm_bonded_fraction(&a, 0.04), 0.006776046111328383, 1e-12);
+    CHECK_RELATIVE("relative strength (A 2.11)", mpm_relative_strength(&a, 0.5, 0.8), 1.211983984420970e-6, 1e-12);
+    a.time = 1;
+    CHECK_RELATIVE("all atoms bond in the end", mpm_bonded_fraction(&a, 0.04), 1, 1e-15);
+    a.time = 0;
+    CHECK_NEAR("none without contact", mpm_bonded_fraction(&a, 0.04), 0, 0);
+    /* 667 - 14 * 2.7 + 0.08 * 660 + 0.1 * 110 - 0.4 * 20 */
+    CHECK_NEAR("critical velocity of aluminium, 2003", mpm_critical_velocity_2003(2.7, 660, 110, 20), 685, 1e-9);
+    /* 0.64 sqrt(900 * 640 + 16 * 110e6/2700), and with 1.4^-0.18 = 0.9412326 */
+    CHECK_RELATIVE("... 2011, 10 um", mpm_critical_velocity_2011(10, 900, 933, 293, 110e6, 2700),
+                   709.1742511671716, 1e-12);
+    CHECK_RELATIVE("... 2011, 14 um", mpm_critical_velocity_2011(14, 900, 933, 293, 110e6, 2700),
+                   667.4979132673243, 1e-12);
+    CHECK_NEAR("... of a melt", mpm_critical_velocity_2011(14, 900, 933, 940, 110e6, 2700), 0, 0);
+}
+
 static void measures(void)
 {
     mpm_units u = mpm_units_um_us_ng();
@@ -94,6 +387,11 @@ int main(void)
 {
     growth();
     averages();
+    rules();
+    interface();
+    partners();
+    splats();
+    literature();
     measures();
     return check_end();
 }

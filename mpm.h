@@ -257,7 +257,9 @@ typedef enum mpm_normal_rule {
     MPM_NORMAL_RANKED = 0, /* of the higher-numbered body; of the other where that vanishes */
     MPM_NORMAL_MVG,        /* of the body with the larger volume gradient */
     MPM_NORMAL_AVERAGE,    /* of the difference of the two volume gradients */
-    MPM_NORMAL_FIXED       /* along z, from the lower- to the higher-numbered body's side */
+    MPM_NORMAL_FIXED,      /* along z, from the lower- to the higher-numbered body's side */
+    MPM_NORMAL_LOGISTIC    /* of the plane that parts their points best: logistic regression (Nairn,
+                              Hammerquist, Smith 2020, Comput. Methods Appl. Mech. Engrg. 362, 112859) */
 } mpm_normal_rule;
 
 /* The problem: grid, geometry, capacities. Start from mpm_desc_default() and set at least cell,
@@ -273,6 +275,10 @@ typedef struct mpm_desc {
     mpm_contact_law contact;
     mpm_normal_rule normal;
     mpm_real friction;       /* Coulomb coefficient between bodies, >= 0 */
+    int separation;          /* 1: bodies touch where their points do; 0: where they share a node (thesis) */
+    mpm_real contact_cutoff; /* a node has contact where both bodies weigh more than this share of a point
+                                there. Below it a point that barely reaches the node would push with its
+                                whole stress, which MUSL never lets it relieve. */
     mpm_real gravity[3];     /* [length/time^2] */
     mpm_real mass_cutoff;    /* nodes lighter than this share of a mean point's mass are passed over:
                                 beyond it lie numbers too small to divide by (GIMP's outermost nodes) */
@@ -360,6 +366,7 @@ typedef struct mpm_node {
     int32_t next;          /* next slot of this node, or -1 */
     int32_t body;
     int32_t sides;         /* bit s: on side s of the grid; bit 6: contact */
+    int32_t pair;          /* first pair at a contact node; those of one node follow each other */
 } mpm_node;
 
 #define MPM_NODE_CONTACT 64
@@ -377,10 +384,20 @@ typedef struct mpm_run {
 typedef struct mpm_pair {
     int32_t a, b;        /* slots; b belongs to the higher-numbered body */
     mpm_real normal[3];  /* unit, outward of a, into b; zero where no normal can be told */
+    mpm_real separation; /* gap between the bodies' points along it [length]; with desc.separation */
+    mpm_real high, low;  /* ... whose ends these are, counted from the node */
     mpm_real bond;       /* nodal D: at 1 or more the pair holds together when separating */
     mpm_real impulse[3]; /* momentum that a got and b gave in this step */
     int held;            /* 1 if the bond gave it */
 } mpm_pair;
+
+/* Work space of the plane that parts the points of a pair: see mpm__plane_normals. */
+typedef struct mpm_plane {
+    mpm_real phi[4];     /* normal and offset: tanh((phi . (x, 1))/2) tells a (-1) from b (+1) */
+    mpm_real matrix[10]; /* lower triangle of the normal equations, row by row */
+    mpm_real right[4];
+    mpm_real points[2];  /* how many of a, of b */
+} mpm_plane;
 
 /* Where energy and momentum went, summed over the steps. A nodal force f does the work
    f dt . (v_k + v_musl) / 2 on the points, exactly: so kinetic + internal + absorbed + contact + bond
@@ -419,6 +436,7 @@ typedef struct mpm_world {
     int32_t runs, run_capacity, sorted_runs;
     mpm_pair *pair;
     int32_t pairs, pair_capacity, pairs_possible;
+    mpm_plane *plane;        /* per pair, with MPM_NORMAL_LOGISTIC */
     int32_t *key, *order;    /* per point: base node; permutation */
     mpm_real *field;         /* all real point arrays: field f at field + f * stride */
     mpm_real *scratch;       /* one array more */
@@ -513,6 +531,7 @@ MPM_API void mpm_move(mpm_world *w, mpm_real dt);
    is the same for ever. Compensated sums. */
 typedef struct mpm_totals {
     double mass, momentum[3], kinetic, internal;
+    double plastic;          /* plastic work done, part of internal: sum of plastic_work m/density */
     double temperature_max, plastic_strain_mean, plastic_work_mean; /* means are mass-weighted */
     double low[3], high[3];  /* extents of the active points' centres */
     long points, retired;
@@ -580,6 +599,24 @@ MPM_API const char *mpm_status_text(mpm_status s)
 #undef MPM__STATUS_TEXT
     default: return "unknown status";
     }
+}
+
+static inline mpm_real mpm__cbrt(mpm_real a)
+{
+#ifdef MPM_FLOAT
+    return cbrtf(a);
+#else
+    return cbrt(a);
+#endif
+}
+
+static inline mpm_real mpm__tanh(mpm_real a)
+{
+#ifdef MPM_FLOAT
+    return tanhf(a);
+#else
+    return tanh(a);
+#endif
 }
 
 static inline mpm_real mpm__sqrt(mpm_real a)
@@ -830,6 +867,7 @@ MPM_API mpm_desc mpm_desc_default(void)
     memset(&d, 0, sizeof d);
     d.cells[0] = d.cells[1] = d.cells[2] = 1;
     d.mass_cutoff = MPM_EPSILON * MPM_EPSILON;
+    d.contact_cutoff = MPM_R(1e-3);
     return d;
 }
 
@@ -866,6 +904,7 @@ MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *f)
     if ((s = mpm__want(d->friction >= 0, f, "friction", d->friction, -1)) != MPM_OK) return s;
     if ((s = mpm__want(d->wall_friction >= 0, f, "wall_friction", d->wall_friction, -1)) != MPM_OK) return s;
     if ((s = mpm__want(d->mass_cutoff >= 0, f, "mass_cutoff", d->mass_cutoff, -1)) != MPM_OK) return s;
+    if ((s = mpm__want(d->contact_cutoff >= 0, f, "contact_cutoff", d->contact_cutoff, -1)) != MPM_OK) return s;
     if ((s = mpm__want(d->user_fields >= 0 && d->user_fields <= MPM_USER_FIELDS, f, "user_fields",
                        (mpm_real)d->user_fields, -1)) != MPM_OK)
         return s;
@@ -955,6 +994,8 @@ static inline size_t mpm__layout_work(mpm_world *w, char *base, int32_t nodes)
     w->run = (mpm_run *)mpm__carve(base, &used, n, sizeof(mpm_run));
     w->slot = (int32_t *)mpm__carve(base, &used, mpm__mul(n, reach), sizeof(int32_t));
     w->pair = (mpm_pair *)mpm__carve(base, &used, n, sizeof(mpm_pair));
+    if (w->desc.normal == MPM_NORMAL_LOGISTIC)
+        w->plane = (mpm_plane *)mpm__carve(base, &used, n, sizeof(mpm_plane));
     return used;
 }
 
@@ -1964,27 +2005,196 @@ static inline void mpm__pair_normal(const mpm_world *w, mpm_pair *pair)
     for (d = 0; d < 3; d++) pair->normal[d] = (use_b && has_b) || !has_a ? nb[d] : na[d];
 }
 
+/* Adds a contact point at x (in cells, from the node) to the normal equations of a pair: Gauss-Newton for
+   the least squares of c - tanh((phi . (x, 1))/2), with c = -1 for points of a and +1 for those of b. */
+static inline void mpm__plane_point(mpm_plane *f, int of_b, const mpm_real *x)
+{
+    const mpm_real X[4] = {x[0], x[1], x[2], 1};
+    mpm_real z = 0, L, slope, left;
+    int i, j, at = 0;
+    for (i = 0; i < 4; i++) z += f->phi[i] * X[i];
+    L = mpm__tanh(z / 2);
+    slope = (1 - L * L) / 2;
+    left = (of_b ? 1 : -1) - L;
+    for (i = 0; i < 4; i++) {
+        for (j = 0; j <= i; j++) f->matrix[at++] += slope * X[i] * slope * X[j];
+        f->right[i] += slope * X[i] * left;
+    }
+    f->points[of_b] += 1;
+}
+
+/* A Gauss-Newton step: solves the normal equations, penalty included, by Cholesky's method and empties
+   them. The penalty keeps phi finite where the points are parted cleanly, as they should be. */
+static inline void mpm__plane_step(mpm_plane *f)
+{
+    const mpm_real penalty = MPM_R(1e-4) * (f->points[0] + f->points[1]);
+    mpm_real *A = f->matrix, *b = f->right;
+    int i, j, k;
+    if (!(f->points[0] > 0 && f->points[1] > 0)) return;
+    for (i = 0; i < 4; i++) {
+        A[i * (i + 1) / 2 + i] += penalty;
+        b[i] -= penalty * f->phi[i];
+    }
+    for (i = 0; i < 4; i++) {
+        mpm_real *row = A + i * (i + 1) / 2;
+        for (j = 0; j <= i; j++) {
+            const mpm_real *other = A + j * (j + 1) / 2;
+            for (k = 0; k < j; k++) row[j] -= row[k] * other[k];
+            row[j] = j < i ? row[j] / other[j] : mpm__sqrt(row[j]);
+        }
+        for (k = 0; k < i; k++) b[i] -= row[k] * b[k];
+        b[i] /= row[i];
+    }
+    for (i = 3; i >= 0; i--) {
+        for (k = i + 1; k < 4; k++) b[i] -= A[k * (k + 1) / 2 + i] * b[k];
+        b[i] /= A[i * (i + 1) / 2 + i];
+        f->phi[i] += b[i];
+    }
+    memset(f->matrix, 0, sizeof f->matrix);
+    memset(f->right, 0, sizeof f->right);
+    f->points[0] = f->points[1] = 0;
+}
+
+/* Half the edge of the cube, square or square ring section that a point fills. */
+static inline mpm_real mpm__point_radius(const mpm_world *w, int32_t i)
+{
+    const mpm_real volume = w->points.mass[i] / w->points.density[i];
+    if (w->desc.geometry == MPM_3D) return mpm__cbrt(volume) / 2;
+    if (w->desc.geometry == MPM_PLANE_STRAIN) return mpm__sqrt(volume) / 2;
+    return mpm__sqrt(volume / (2 * MPM__PI * w->points.x[0][i])) / 2;
+}
+
+/* Shows every point of a run to the pairs at the contact nodes it touches: to their planes if `fit`, else
+   to their separations. Positions count from the node, in cells; across a mirror, in the image. */
+MPM__KERNEL void mpm__contact_points_run(mpm_world *w, const mpm_run *r, int k, int ky, int fit)
+{
+    const int32_t *slot = mpm__run_nodes(w, r);
+    const mpm_real inv = 1 / w->desc.cell;
+    mpm_real N[MPM__SUPPORT];
+    mpm__weights s;
+    int32_t at, j;
+    int n, p, a, d;
+    MPM__EACH_PIECE(r, at, n) {
+        mpm__weigh(w, r, at, n, k, ky, &s);
+        for (p = 0; p < n; p++) {
+            mpm__products(&s, p, k, ky, N);
+            for (a = 0; a < k * ky * k; a++) {
+                const mpm_node *node = &w->node[slot[a]];
+                const int step[3] = {a % k, a / k % ky, a / k / ky};
+                mpm_real x[3] = {0, 0, 0}, along = 0, radius;
+                if (!(node->sides & MPM_NODE_CONTACT) || !(N[a] > 0)) continue;
+                for (d = 0; d < 3; d++) {
+                    if (d == 1 && ky == 1) continue;
+                    x[d] = (w->points.x[d][at + p] - w->desc.origin[d]) * inv -
+                           (mpm_real)(r->base[d] - w->ghost + step[d]);
+                    x[d] *= mpm__mirror(r, a, d, k, ky);
+                }
+                if (fit) mpm__constrain(w, node, x, NULL); /* on a mirror the image cancels it */
+                for (j = node->pair; j < w->pairs && w->node[w->pair[j].a].index == node->index; j++) {
+                    mpm_pair *pair = &w->pair[j];
+                    const int of_b = pair->b == slot[a];
+                    if (!of_b && pair->a != slot[a]) continue;
+                    if (fit) {
+                        mpm__plane_point(&w->plane[j], of_b, x);
+                        continue;
+                    }
+                    radius = mpm__point_radius(w, at + p);
+                    for (d = 0; d < 3; d++) along += x[d] * w->desc.cell * pair->normal[d];
+                    if (of_b) pair->low = along - radius < pair->low ? along - radius : pair->low;
+                    else pair->high = along + radius > pair->high ? along + radius : pair->high;
+                    along = 0;
+                }
+            }
+        }
+    }
+}
+
+#define MPM__PLANE_STEPS 6 /* the first is the linear discriminant; the fit moves little after the fifth */
+
+/* Normals by logistic regression: the plane that parts the points of a from those of b best. */
+static inline void mpm__plane_normals(mpm_world *w)
+{
+    int32_t i;
+    int n, d;
+    memset(w->plane, 0, (size_t)w->pairs * sizeof *w->plane);
+    for (n = 0; n < MPM__PLANE_STEPS; n++) {
+#define MPM__CALL(k, ky, hoop)                                                                    \
+    do {                                                                                          \
+        if (run->flags & MPM_NODE_CONTACT) mpm__contact_points_run(w, run, k, ky, 1);             \
+    } while (0)
+        MPM__EACH_RUN(w, MPM__CALL);
+#undef MPM__CALL
+        for (i = 0; i < w->pairs; i++) mpm__plane_step(&w->plane[i]);
+    }
+    for (i = 0; i < w->pairs; i++) {
+        mpm_real normal[3];
+        if (mpm__unit(w->plane[i].phi, 1024 * MPM_EPSILON, normal))
+            for (d = 0; d < 3; d++) w->pair[i].normal[d] = normal[d];
+    }
+}
+
+/* The gap between the points of a and those of b along the normal, points taken as large as they are. */
+static inline void mpm__separations(mpm_world *w)
+{
+    int32_t i;
+    for (i = 0; i < w->pairs; i++) {
+        w->pair[i].high = -MPM_R(1e30);
+        w->pair[i].low = MPM_R(1e30);
+    }
+#define MPM__CALL(k, ky, hoop)                                                                    \
+    do {                                                                                          \
+        if (run->flags & MPM_NODE_CONTACT) mpm__contact_points_run(w, run, k, ky, 0);             \
+    } while (0)
+    MPM__EACH_RUN(w, MPM__CALL);
+#undef MPM__CALL
+    for (i = 0; i < w->pairs; i++) w->pair[i].separation = w->pair[i].low - w->pair[i].high;
+}
+
+/* Whether a body weighs enough at a node to be in contact there. In axisymmetry points are rings, as
+   heavy as their radius makes them; on a symmetry plane half of a node lies behind the mirror. */
+static inline int mpm__weighs(const mpm_world *w, const mpm_node *n)
+{
+    const mpm_body *b = &w->body[n->body];
+    const int rings = w->desc.geometry == MPM_AXISYMMETRIC;
+    mpm_real point = b->point_mass;
+    int s;
+    if (rings) {
+        mpm_real r = w->desc.origin[0] + (mpm_real)(n->index % w->nodes_per_axis[0] - w->ghost) * w->desc.cell;
+        if (r < w->desc.cell / 2) r = w->desc.cell / 2;
+        point = b->desc.density * b->desc.spacing * b->desc.spacing * 2 * MPM__PI * r;
+    }
+    for (s = rings ? 2 : 0; s < 6; s++)
+        if ((n->sides >> s & 1) && w->desc.side[s] == MPM_SIDE_SYMMETRY) point /= 2;
+    return n->mass > w->desc.contact_cutoff * point && n->mass > w->desc.mass_cutoff * b->point_mass;
+}
+
+/* Lists the pairs of slots that meet at a grid node whose first slot is i. */
+static inline void mpm__pairs_at(mpm_world *w, int32_t i)
+{
+    const int32_t first = w->pairs;
+    int32_t a, b;
+    for (b = i; b >= 0; b = w->node[b].next)
+        for (a = w->node[b].next; a >= 0; a = w->node[a].next) {
+            mpm_pair *pair = &w->pair[w->pairs];
+            if (!mpm__weighs(w, &w->node[a]) || !mpm__weighs(w, &w->node[b])) continue;
+            memset(pair, 0, sizeof *pair);
+            pair->a = a;
+            pair->b = b;
+            w->node[a].sides |= MPM_NODE_CONTACT;
+            w->node[b].sides |= MPM_NODE_CONTACT;
+            w->node[a].pair = w->node[b].pair = first;
+            w->pairs++;
+        }
+}
+
 MPM_API void mpm_contact_find(mpm_world *w)
 {
     const int reach = w->support[0] * w->support[1] * w->support[2];
-    int32_t i, a, b;
+    int32_t i;
     int s;
     w->pairs = 0;
-    for (i = 0; i < w->nodes; i++) {
-        if (w->head[w->node[i].index] != i || w->node[i].next < 0) continue;
-        for (b = i; b >= 0; b = w->node[b].next)
-            for (a = w->node[b].next; a >= 0; a = w->node[a].next) {
-                mpm_pair *pair = &w->pair[w->pairs];
-                if (!(w->node[a].mass > w->desc.mass_cutoff * w->body[w->node[a].body].point_mass)) continue;
-                if (!(w->node[b].mass > w->desc.mass_cutoff * w->body[w->node[b].body].point_mass)) continue;
-                memset(pair, 0, sizeof *pair);
-                pair->a = a;
-                pair->b = b;
-                w->node[a].sides |= MPM_NODE_CONTACT;
-                w->node[b].sides |= MPM_NODE_CONTACT;
-                w->pairs++;
-            }
-    }
+    for (i = 0; i < w->nodes; i++)
+        if (w->head[w->node[i].index] == i && w->node[i].next >= 0) mpm__pairs_at(w, i);
     if (w->pairs == 0) return;
     for (i = 0; i < w->runs; i++)
         for (s = 0; s < reach; s++)
@@ -2002,6 +2212,8 @@ MPM_API void mpm_contact_find(mpm_world *w)
         mpm__constrain(w, &w->node[pair->b], w->node[pair->b].gradient, NULL);
         mpm__pair_normal(w, pair);
     }
+    if (w->desc.normal == MPM_NORMAL_LOGISTIC) mpm__plane_normals(w);
+    if (w->desc.separation) mpm__separations(w);
 }
 
 /* Momentum that a must gain and b lose so that both move together (A 3.31, times dt). */
@@ -2042,6 +2254,7 @@ MPM_API void mpm_contact_apply(mpm_world *w, mpm_real dt)
         mpm__sticking(a, b, j);
         for (d = 0; d < 3; d++) toward -= j[d] * pair->normal[d];
         approaching = toward > 0; /* (m_b P_a - m_a P_b) . n > 0 (A 3.29) */
+        if (w->desc.separation && pair->separation > 0) approaching = 0;
         bonded = !approaching && pair->bond >= 1;
         if (!approaching && !bonded && w->desc.contact != MPM_CONTACT_WELD) continue;
         if (approaching && w->desc.contact == MPM_CONTACT_FRICTION) mpm__coulomb(pair->normal, w->desc.friction, j);
@@ -2303,7 +2516,7 @@ MPM_API mpm_totals mpm_body_totals(const mpm_world *w, int32_t body)
 {
     const mpm_points *q = &w->points;
     const int32_t from = body < 0 ? 0 : body, to = body < 0 ? w->bodies : body + 1;
-    double rest[8] = {0, 0, 0, 0, 0, 0, 0, 0};
+    double rest[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
     mpm_totals t;
     int32_t b, i;
     int d, any = 0;
@@ -2329,6 +2542,7 @@ MPM_API mpm_totals mpm_body_totals(const mpm_world *w, int32_t body)
             mpm__sum(&t.internal, &rest[5], m * (double)q->energy[i]);
             mpm__sum(&t.plastic_strain_mean, &rest[6], m * (double)q->plastic_strain[i]);
             mpm__sum(&t.plastic_work_mean, &rest[7], m * (double)q->plastic_work[i]);
+            mpm__sum(&t.plastic, &rest[8], m / (double)q->density[i] * (double)q->plastic_work[i]);
             if ((double)q->temperature[i] > t.temperature_max) t.temperature_max = (double)q->temperature[i];
         }
     }
@@ -2336,6 +2550,7 @@ MPM_API mpm_totals mpm_body_totals(const mpm_world *w, int32_t body)
     t.mass += rest[3];
     t.kinetic += rest[4];
     t.internal += rest[5];
+    t.plastic += rest[8];
     if (t.mass > 0) {
         t.plastic_strain_mean = (t.plastic_strain_mean + rest[6]) / t.mass;
         t.plastic_work_mean = (t.plastic_work_mean + rest[7]) / t.mass;

@@ -163,7 +163,7 @@ static inline int impact_check(const impact_case *c, char *m, size_t n)
            impact_knows("full|half|quarter", "symmetry", c->symmetry, m, n) &&
            impact_knows("3d|axisymmetric", "geometry", c->geometry, m, n) &&
            impact_knows("linear|gimp", "functions", c->functions, m, n) &&
-           impact_knows("ranked|mvg|average|vertical", "normal", c->normal, m, n) &&
+           impact_knows("ranked|mvg|average|vertical|logistic", "normal", c->normal, m, n) &&
            impact_knows("consistent|staged", "plasticity", c->plasticity, m, n) && impact_agrees(c, m, n);
 }
 
@@ -197,7 +197,7 @@ static inline mpm_desc impact_grid(const impact_case *c)
     d.cells[2] = above + below;
     d.origin[2] = (mpm_real)(shift - below * c->cell);
     d.friction = (mpm_real)c->friction;
-    d.normal = (mpm_normal_rule)impact_word("ranked|mvg|average|vertical", c->normal);
+    d.normal = (mpm_normal_rule)impact_word("ranked|mvg|average|vertical|logistic", c->normal);
     d.bodies = 2;
     return d;
 }

@@ -270,7 +270,7 @@ static void normals(void)
     mpm_body_desc ball = scene_body(&m, mpm_sphere(0, 0, 2, 2), 0.5, -10);
     mpm_body_desc slab = scene_body(&m, mpm_box(-4, -4, -4, 4, 4, 0), 0.5, 0);
     mpm_normal_rule rule;
-    for (rule = MPM_NORMAL_RANKED; rule <= MPM_NORMAL_FIXED; rule = (mpm_normal_rule)(rule + 1)) {
+    for (rule = MPM_NORMAL_RANKED; rule <= MPM_NORMAL_LOGISTIC; rule = (mpm_normal_rule)(rule + 1)) {
         mpm_world w;
         int32_t i;
         int down = 1;

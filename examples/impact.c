@@ -338,6 +338,7 @@ int main(int argc, char **argv)
         {"functions", OPTION_TEXT, &c.functions, "shape functions: linear|gimp"},
         {"friction", OPTION_REAL, &c.friction, "Coulomb coefficient between the bodies"},
         {"normal", OPTION_TEXT, &c.normal, "contact normal: ranked|mvg|average|vertical|logistic"},
+        {"separation", OPTION_FLAG, &c.separation, "contact where the points themselves touch, not where they share a node"},
         {"plasticity", OPTION_TEXT, &c.plasticity, "return mapping: consistent|staged"},
         {"gap", OPTION_REAL, &c.gap, "distance of the bodies at the start, um"},
         {"margin", OPTION_REAL, &c.margin, "free grid around the bodies, particle diameters"},

@@ -25,6 +25,7 @@ typedef struct impact_case {
     double eps_c, epsdot_c;                        /* strain bond: 1, 1/us */
     double shell;                                  /* thickness of the surface that contacts and bonds, spacings */
     double friction;
+    int separation;                                /* 1: bodies touch where their points do */
     double gap, offset;                            /* um: start distance; shift of the grid */
     double margin;                                 /* free grid around the bodies, particle diameters */
     const char *shape, *material, *substrate_material, *model; /* "": substrate as particle */
@@ -197,6 +198,7 @@ static inline mpm_desc impact_grid(const impact_case *c)
     d.cells[2] = above + below;
     d.origin[2] = (mpm_real)(shift - below * c->cell);
     d.friction = (mpm_real)c->friction;
+    d.separation = c->separation;
     d.normal = (mpm_normal_rule)impact_word("ranked|mvg|average|vertical|logistic", c->normal);
     d.bodies = 2;
     return d;

@@ -43,6 +43,11 @@
 #define mpm_restitution mpm_restitution_f32
 #define mpm_restitution_from mpm_restitution_from_f32
 #define mpm_splat_measure mpm_splat_measure_f32
+#define mpm_grip_apply mpm_grip_apply_f32
+#define mpm_grip_hold mpm_grip_hold_f32
+#define mpm_pull_begin mpm_pull_begin_f32
+#define mpm_pull_apply mpm_pull_apply_f32
+#define mpm_pull_hold mpm_pull_hold_f32
 #define mpm_bonded_fraction mpm_bonded_fraction_f32
 #define mpm_relative_strength mpm_relative_strength_f32
 #define mpm_critical_velocity_2003 mpm_critical_velocity_2003_f32
@@ -178,6 +183,7 @@ MPM_API mpm_rebound mpm_restitution_from(const mpm_world *w, int32_t body, int32
 /* The shape of a splat: a particle on a substrate whose upper face was flat, along z. Points faster than
    `filter` are ejected and left out. Extents are those of the points' cubes, half a spacing beyond centres. */
 typedef struct mpm_splat {
+    double top;           /* height above which the particle has no point [length] */
     double height, width; /* of the particle; width: twice the largest distance from its initial axis [length] */
     double compression;   /* 1 - height / initial height */
     double flattening;    /* width / initial width */
@@ -186,6 +192,57 @@ typedef struct mpm_splat {
 } mpm_splat;
 
 MPM_API mpm_splat mpm_splat_measure(const mpm_world *w, int32_t particle, int32_t substrate, mpm_real filter);
+
+/* ---- pulling apart ---------------------------------------------------------------------------- */
+
+/* A grip: the nodes of one body between two heights get a prescribed velocity. The layer moves along. What
+   the grip gives is in the ledger: its impulse in `impulse`, its work in `walls` (negative: brought in). */
+typedef struct mpm_grip {
+    int32_t body;
+    mpm_real low, high;   /* heights [length], advanced by mpm_grip_hold */
+    mpm_real velocity[3]; /* [length/time] */
+    int axes;             /* bit d: direction d is prescribed; 4: z alone, 7: all */
+    long nodes;           /* how many it held in the last step */
+    double impulse[3];    /* momentum it gave to the body in the last step */
+} mpm_grip;
+
+/* Between mpm_contact_apply and mpm_g2p. Test: 32_pull. */
+MPM_API void mpm_grip_apply(mpm_grip *g, mpm_world *w, mpm_real dt);
+
+/* Between mpm_musl, which averages the prescribed velocity away, and mpm_stress. Test: 32_pull. */
+MPM_API void mpm_grip_hold(mpm_grip *g, mpm_world *w, mpm_real dt);
+
+/* How strong is the bond? Two bodies, one upon the other, are drawn apart along z: the lower held fast
+   below a height, the upper drawn up above another. Heights are moved to the middle between grid planes,
+   so that they do not pass one soon. */
+typedef struct mpm_pull_desc {
+    int32_t upper, lower;      /* bodies */
+    mpm_real above, below;     /* upper is gripped above, lower below; above > below [length] */
+    int axes;                  /* directions the grips prescribe: 4: z alone, 7: all */
+    mpm_real velocity, ramp;   /* of the upper grip, > 0, reached steadily within the time ramp >= 0 */
+    mpm_real sample;           /* time over which a force is averaged, > 0: some transits of the waves */
+    double area;               /* that stress is referred to [length^2], > 0 */
+} mpm_pull_desc;
+
+typedef struct mpm_pull {
+    mpm_pull_desc desc;
+    mpm_grip grip[2];          /* of the upper and of the lower body */
+    double time, separation;   /* since the start: time, way of the upper grip */
+    double force, grip_force;  /* tension between the bodies, and in the upper grip: means of the last sample */
+    double work;               /* of the upper grip, grip_force over the way */
+    double peak_force, peak_stress, peak_separation; /* largest sample of force: it, over the area, where */
+    long samples;
+    double sum[2], since;      /* impulses and time of the sample under way */
+} mpm_pull;
+
+/* MPM_ERR_ARGUMENT / NAN with the field. The world is only read. Test: 32_pull. */
+MPM_API mpm_status mpm_pull_begin(mpm_pull *p, const mpm_world *w, const mpm_pull_desc *d, mpm_fault *fault);
+
+/* As mpm_grip_apply, for both grips. */
+MPM_API void mpm_pull_apply(mpm_pull *p, mpm_world *w, mpm_real dt);
+
+/* As mpm_grip_hold, for both. Returns 1 when a sample is complete: force, grip_force and peak are new. */
+MPM_API int mpm_pull_hold(mpm_pull *p, mpm_world *w, mpm_real dt);
 
 /* ---- estimates from the literature ------------------------------------------------------------ */
 
@@ -571,6 +628,7 @@ MPM_API mpm_splat mpm_splat_measure(const mpm_world *w, int32_t particle, int32_
         first = 0;
     }
     if (!first) {
+        r.top = high + (double)b->desc.spacing / 2;
         r.height = high - low + (double)b->desc.spacing;
         r.width = 2 * sqrt(radius) + (double)b->desc.spacing;
         r.compression = 1 - r.height / (double)(2 * ball->half[2]);
@@ -583,6 +641,117 @@ MPM_API mpm_splat mpm_splat_measure(const mpm_world *w, int32_t particle, int32_
         if (rise > r.rim) r.rim = rise;
     }
     return r;
+}
+
+/* ---- pulling apart ---------------------------------------------------------------------------- */
+
+/* 1 if the grip holds this slot. */
+static inline int mpm__gripped(const mpm_grip *g, const mpm_world *w, const mpm_node *n)
+{
+    const int32_t layer = n->index / (w->nodes_per_axis[0] * w->nodes_per_axis[1]) - w->ghost;
+    const mpm_real z = w->desc.origin[2] + (mpm_real)layer * w->desc.cell;
+    return n->body == g->body && n->mass > 0 && z >= g->low && z <= g->high;
+}
+
+MPM_API void mpm_grip_apply(mpm_grip *g, mpm_world *w, mpm_real dt)
+{
+    int32_t i;
+    int d;
+    g->nodes = 0;
+    g->impulse[0] = g->impulse[1] = g->impulse[2] = 0;
+    for (i = 0; i < w->nodes; i++) {
+        mpm_node *n = &w->node[i];
+        mpm_real j[3];
+        if (!mpm__gripped(g, w, n)) continue;
+        for (d = 0; d < 3; d++) j[d] = g->axes >> d & 1 ? n->mass * g->velocity[d] - n->momentum[d] : 0;
+        mpm__constrain(w, n, j, NULL);
+        for (d = 0; d < 3; d++) {
+            n->momentum[d] += j[d];
+            n->force[d] += j[d] / dt;
+            n->reaction[d] += j[d];
+            g->impulse[d] += (double)j[d];
+            w->ledger.impulse[d] += (double)j[d];
+        }
+        g->nodes++;
+    }
+}
+
+MPM_API void mpm_grip_hold(mpm_grip *g, mpm_world *w, mpm_real dt)
+{
+    int32_t i;
+    int d;
+    for (i = 0; i < w->nodes; i++) {
+        mpm_node *n = &w->node[i];
+        if (!mpm__gripped(g, w, n)) continue;
+        for (d = 0; d < 3; d++)
+            if (g->axes >> d & 1) n->velocity[d] = g->velocity[d];
+        mpm__constrain(w, n, n->velocity, NULL);
+    }
+    g->low += g->velocity[2] * dt;
+    g->high += g->velocity[2] * dt;
+}
+
+/* The middle between grid planes nearest to a height. */
+static inline mpm_real mpm__between_planes(const mpm_world *w, mpm_real z)
+{
+    const double cell = (double)w->desc.cell, origin = (double)w->desc.origin[2];
+    return (mpm_real)(origin + cell * (floor(((double)z - origin) / cell) + 0.5));
+}
+
+MPM_API mpm_status mpm_pull_begin(mpm_pull *p, const mpm_world *w, const mpm_pull_desc *d, mpm_fault *f)
+{
+    const mpm_real reach = (mpm_real)w->nodes_per_axis[2] * w->desc.cell; /* more than the grid */
+    const int known = d->upper >= 0 && d->upper < w->bodies && d->lower >= 0 && d->lower < w->bodies;
+    mpm_status s;
+    memset(p, 0, sizeof *p);
+    if ((s = mpm__want(known && d->upper != d->lower, f, "pull bodies", (mpm_real)d->lower, d->upper)) != MPM_OK)
+        return s;
+    if ((s = mpm__want(1, f, "pull below", d->below, -1)) != MPM_OK) return s;
+    if ((s = mpm__want(d->above > d->below, f, "pull above", d->above, -1)) != MPM_OK) return s;
+    if ((s = mpm__want(d->axes > 0 && d->axes < 8, f, "pull axes", (mpm_real)d->axes, -1)) != MPM_OK) return s;
+    if ((s = mpm__want(d->velocity > 0, f, "pull velocity", d->velocity, -1)) != MPM_OK) return s;
+    if ((s = mpm__want(d->ramp >= 0, f, "pull ramp", d->ramp, -1)) != MPM_OK) return s;
+    if ((s = mpm__want(d->sample > 0, f, "pull sample", d->sample, -1)) != MPM_OK) return s;
+    if ((s = mpm__want(d->area > 0, f, "pull area", (mpm_real)d->area, -1)) != MPM_OK) return s;
+    p->desc = *d;
+    p->grip[0].body = d->upper;
+    p->grip[0].low = mpm__between_planes(w, d->above);
+    p->grip[0].high = p->grip[0].low + 2 * reach;
+    p->grip[1].body = d->lower;
+    p->grip[1].high = mpm__between_planes(w, d->below);
+    p->grip[1].low = p->grip[1].high - 2 * reach;
+    p->grip[0].axes = p->grip[1].axes = d->axes;
+    return MPM_OK;
+}
+
+MPM_API void mpm_pull_apply(mpm_pull *p, mpm_world *w, mpm_real dt)
+{
+    const double t = p->time + (double)dt, ramp = (double)p->desc.ramp;
+    p->grip[0].velocity[2] = t < ramp ? (mpm_real)(t / ramp) * p->desc.velocity : p->desc.velocity;
+    mpm_grip_apply(&p->grip[0], w, dt);
+    mpm_grip_apply(&p->grip[1], w, dt);
+    p->sum[0] -= mpm_bond_interface(w, p->desc.upper, p->desc.lower).impulse[2];
+    p->sum[1] += p->grip[0].impulse[2];
+    p->work += p->grip[0].impulse[2] * (double)p->grip[0].velocity[2];
+    p->separation += (double)(p->grip[0].velocity[2] * dt);
+    p->time = t;
+    p->since += (double)dt;
+}
+
+MPM_API int mpm_pull_hold(mpm_pull *p, mpm_world *w, mpm_real dt)
+{
+    mpm_grip_hold(&p->grip[0], w, dt);
+    mpm_grip_hold(&p->grip[1], w, dt);
+    if (p->since < (double)p->desc.sample * (1 - 1e-9)) return 0;
+    p->force = p->sum[0] / p->since;
+    p->grip_force = p->sum[1] / p->since;
+    p->sum[0] = p->sum[1] = p->since = 0;
+    if (!p->samples++ || p->force > p->peak_force) {
+        p->peak_force = p->force;
+        p->peak_stress = p->force / p->desc.area;
+        p->peak_separation = p->separation;
+    }
+    return 1;
 }
 
 /* ---- estimates from the literature ------------------------------------------------------------ */

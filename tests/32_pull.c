@@ -1,0 +1,176 @@
+/* 32_pull - two bonded cubes are drawn apart: force against E eps A, the yield stress, nothing without a
+   bond; the ledger of the grips; refusals. SPDX-License-Identifier: MIT */
+#define MPM_IMPLEMENTATION
+#include "scene.h"
+#include "check.h"
+
+static const double young = 70000; /* MPa */
+
+/* A cube of 4 um on another, both of one simple material; D of all their surface points is `bond`. */
+static mpm_world cubes(mpm_material *m, double bond)
+{
+    mpm_desc d = scene_grid(1, 8, 8, 12, -4, -4, -6);
+    mpm_body_desc upper, lower;
+    mpm_world w;
+    int32_t i;
+    *m = mpm_material_default();
+    m->density = MPM_R(2.7);
+    m->young = (mpm_real)young;
+    m->poisson = 0; /* the grips do not hinder contraction */
+    m->shear_modulus = (mpm_real)(young / 2);
+    m->heat_fraction = 0;
+    upper = scene_body(m, mpm_box(-2, -2, 0, 2, 2, 4), 0.5, 0);
+    lower = scene_body(m, mpm_box(-2, -2, -4, 2, 2, 0), 0.5, 0);
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &upper);
+    mpm_body_add(&w, &lower);
+    for (i = 0; i < w.points.count; i++) w.points.bond[i] = (mpm_real)bond;
+    return w;
+}
+
+/* Grips within one cell of the ends: the planes z = 3 and z = -3 and beyond, 6 um between them. */
+static mpm_pull_desc pulling(double velocity)
+{
+    mpm_pull_desc d;
+    d.upper = 0;
+    d.lower = 1;
+    d.above = MPM_R(2.5);
+    d.below = MPM_R(-2.5);
+    d.axes = 4;
+    d.velocity = (mpm_real)velocity;
+    d.ramp = MPM_R(0.05);
+    d.sample = MPM_R(0.005);
+    d.area = 16;
+    return d;
+}
+
+/* A step of the pull; the bond stays as it is. Returns 0, or -1 on failure. */
+static int step(mpm_pull *p, mpm_world *w, const mpm_bond *b, mpm_real dt)
+{
+    mpm_status s;
+    while ((s = mpm_locate(w)) == MPM_ERR_FULL)
+        if (mpm_grow(w, NULL, 0) != MPM_OK) return -1;
+    if (s < 0) return -1;
+    mpm_p2g(w);
+    mpm_forces(w, dt);
+    mpm_grid_update(w, dt);
+    mpm_contact_find(w);
+    mpm_bond_nodes(b, w);
+    mpm_contact_apply(w, dt);
+    mpm_pull_apply(p, w, dt);
+    mpm_g2p(w, dt);
+    mpm_musl(w, dt);
+    mpm_pull_hold(p, w, dt);
+    if (mpm_stress(w, dt) < 0) return -1;
+    mpm_move(w, dt);
+    return 0;
+}
+
+/* Draws for a number of samples of 5 ns, and returns how it ended. */
+static mpm_pull draw(mpm_world *w, double velocity, long samples, int *ok)
+{
+    const mpm_units u = mpm_units_um_us_ng();
+    const mpm_bond b = mpm_bond_default(&u);
+    const mpm_pull_desc d = pulling(velocity);
+    const mpm_real dt = mpm_time_step(w, MPM_R(0.2));
+    mpm_pull p;
+    *ok = mpm_pull_begin(&p, w, &d, NULL) == MPM_OK;
+    while (*ok && p.samples < samples)
+        if (step(&p, w, &b, dt) < 0) *ok = 0;
+    return p;
+}
+
+/* Slowly enough that inertia takes 1 % of the force. Poisson's number is 0, so that the grips do not
+   hinder contraction and the answer is exact. */
+static void elastic(void)
+{
+    mpm_material m;
+    mpm_world w = cubes(&m, 1);
+    mpm_totals t;
+    mpm_pull p;
+    double strain, stored;
+    int ok;
+    p = draw(&w, 0.1, 40, &ok);
+    CHECK_TRUE("two bonded elastic cubes", ok);
+    strain = (p.separation - 0.5 * 0.1 * 0.005) / 6; /* in the middle of the last sample */
+    CHECK_RELATIVE("tension between the bodies is E eps A", p.force, young * strain * 16, 0.02);
+    CHECK_RELATIVE("its stress is nominal", p.peak_stress, p.peak_force / 16, 1e-12);
+    t = mpm_body_totals(&w, -1);
+    stored = 0.5 * young / 6 * 16 * p.separation * p.separation;
+    CHECK_RELATIVE("work: half the force times the way, and motion", p.work, stored + t.kinetic, 0.02);
+    CHECK_RELATIVE("the ledger knows it", -w.ledger.walls, p.work, 0.01);
+    CHECK_RELATIVE("... and closes", t.kinetic + t.internal + w.ledger.contact + w.ledger.bond, -w.ledger.walls, 0.01);
+    CHECK_NEAR("momentum comes from the grips", t.momentum[2], w.ledger.impulse[2],
+               1e4 * (double)MPM_EPSILON * fabs(p.force) * p.time);
+    CHECK_EQUAL("the grip holds two planes", p.grip[0].nodes, 50);
+    mpm_free(&w);
+}
+
+/* Grips hinder plastic contraction, which raises the stress by a few percent, never lowers it. */
+static void yields(void)
+{
+    mpm_material m;
+    mpm_world w = cubes(&m, 1);
+    mpm_pull p;
+    int ok;
+    m.strength = MPM_STRENGTH_LINEAR;
+    m.linear_yield = 150;
+    p = draw(&w, 0.25, 40, &ok);
+    CHECK_TRUE("two bonded cubes that yield at 150 MPa", ok);
+    CHECK_NEAR("bear the yield stress at most", p.peak_stress, 157, 7);
+    CHECK_NEAR("... and keep bearing it", p.force / 16, 157, 7);
+    CHECK_TRUE("... reached at the yield strain", p.peak_separation > 6 * 150 / young);
+    mpm_free(&w);
+}
+
+static void unbonded(void)
+{
+    mpm_material m;
+    mpm_world w = cubes(&m, 0.99);
+    mpm_pull p;
+    mpm_totals upper, lower;
+    int ok;
+    p = draw(&w, 0.1, 40, &ok);
+    CHECK_TRUE("two cubes that have nearly bonded", ok);
+    upper = mpm_body_totals(&w, 0);
+    lower = mpm_body_totals(&w, 1);
+    CHECK_NEAR("bear nothing", p.peak_stress, 0, 1e-6 * young);
+    CHECK_NEAR("the upper one goes along", upper.low[2] - 0.25, p.separation, 0.05 * p.separation);
+    CHECK_NEAR("the lower one stays", lower.high[2] + 0.25, 0, 1e-3 * p.separation);
+    mpm_free(&w);
+}
+
+static void refusals(void)
+{
+    mpm_material m;
+    mpm_world w = cubes(&m, 1);
+    mpm_pull_desc d = pulling(1);
+    mpm_fault f;
+    mpm_pull p;
+    CHECK_EQUAL("a pull", mpm_pull_begin(&p, &w, &d, &f), MPM_OK);
+    CHECK_NEAR("grips between planes", p.grip[0].low, 2.5, 1e-6);
+    d.upper = 1;
+    CHECK_EQUAL("a body from itself", mpm_pull_begin(&p, &w, &d, &f), MPM_ERR_ARGUMENT);
+    d = pulling(1);
+    d.above = -3;
+    CHECK_EQUAL("grips that overlap", mpm_pull_begin(&p, &w, &d, &f), MPM_ERR_ARGUMENT);
+    d = pulling(0);
+    CHECK_EQUAL("no velocity", mpm_pull_begin(&p, &w, &d, &f), MPM_ERR_ARGUMENT);
+    d = pulling(1);
+    d.area = NAN;
+    CHECK_EQUAL("an area that is no number", mpm_pull_begin(&p, &w, &d, &f), MPM_ERR_NAN);
+    CHECK_TRUE("... is named", !strcmp(f.field, "pull area"));
+    d = pulling(1);
+    d.sample = 0;
+    CHECK_EQUAL("no time to average over", mpm_pull_begin(&p, &w, &d, &f), MPM_ERR_ARGUMENT);
+    mpm_free(&w);
+}
+
+int main(void)
+{
+    elastic();
+    yields();
+    unbonded();
+    refusals();
+    return check_end();
+}

@@ -11,7 +11,7 @@
 
 /* ---- the case ------------------------------------------------------------------------------ */
 
-#define STUDY_OPTIONS 40 /* room for the options of a case and a program's own */
+#define STUDY_OPTIONS 64 /* room for the options of a case and a program's own */
 
 static inline void study_option(option *o, int *n, const char *name, option_type type, void *value, const char *help)
 {

@@ -1,0 +1,250 @@
+/* calibrate - the pair of bond parameters at which two particle sizes just bond (source A, 4.1.2 and 5.1).
+
+   Sweeps (G_c, Gdot_c) for 14 um at 810 m/s and 30 um at 770 m/s, classifies every run, fits the boundary
+   of each size by logistic regression and crosses the boundaries. Only where the class changes is the grid
+   of pairs run in full (--plain: everywhere, 375 runs a size as source A). Each run is a task of its own:
+
+       build/calibrate                                    all of it, here
+       build/calibrate --list                             the tasks not done yet, one a line
+       build/calibrate --task 17                          one of them
+       build/calibrate --collect                          fit, cross and draw what is done
+       build/calibrate --list | cut -d' ' -f1 | xargs -P 8 -n 1 build/calibrate --quiet --task
+
+   Without --plain the list grows with what is known: repeat the last line until it is empty. A task
+   writes one file, whole or not at all, and is never repeated. SPDX-License-Identifier: MIT */
+#define MPM_IMPLEMENTATION
+#include "calibration.h"
+
+static int fail(const char *message)
+{
+    fprintf(stderr, "error: %s\n", message);
+    return 1;
+}
+
+static int list(const calibration *q, const study *s)
+{
+    static calibration_map map;
+    int size;
+    long k;
+    for (size = 0; size < 2; size++) {
+        calibration_look(q, s, size, &map);
+        for (k = 0; k < calibration_nodes(q); k++)
+            if (map.wanted[k] && map.bonds[k] < 0)
+                printf("%ld  %g um at %g m/s, G_c %.6g, Gdot_c %.6g\n", size * calibration_nodes(q) + k, q->diameter[size],
+                       q->velocity[size], calibration_gc(q, k), calibration_gdot(q, k));
+    }
+    return 0;
+}
+
+static int write_tasks(const calibration *q, const study *s, mpm_fault *fault)
+{
+    char path[MPM_IO_PATH];
+    double value[STUDY_VALUES];
+    mpm_io_csv t;
+    int size;
+    long k;
+    snprintf(path, sizeof path, "%s/tasks.csv", s->folder);
+    mpm_io_csv_begin(&t, path, "task,diameter_um,velocity_m_s,gc_J_m2,gdot_J_m2_us,pbcp_percent,restitution_ratio,"
+                               "v_late_m_s,bonds", "examples/calibrate.c", fault);
+    for (size = 0; size < 2; size++)
+        for (k = 0; k < calibration_nodes(q); k++) {
+            const impact_case c = calibration_case(q, size, k);
+            if (!study_find(s, &c, value)) continue;
+            mpm_io_csv_integer(&t, size * calibration_nodes(q) + k);
+            mpm_io_csv_real(&t, (mpm_real)q->diameter[size]);
+            mpm_io_csv_real(&t, (mpm_real)q->velocity[size]);
+            mpm_io_csv_real(&t, (mpm_real)c.gc);
+            mpm_io_csv_real(&t, (mpm_real)c.gdot);
+            mpm_io_csv_real(&t, (mpm_real)value[STUDY_PBCP]);
+            mpm_io_csv_real(&t, (mpm_real)calibration_ratio(q, size, value));
+            mpm_io_csv_real(&t, (mpm_real)value[STUDY_V_LATE]);
+            mpm_io_csv_integer(&t, calibration_bonds(q, size, value));
+        }
+    return mpm_io_csv_end(&t, fault) >= 0;
+}
+
+static int write_summary(const calibration *q, const calibration_result *r, const study *s, const option *o, int n,
+                         mpm_fault *fault)
+{
+    char path[MPM_IO_PATH], text[256], name[40];
+    double theta[6];
+    mpm_io_json j;
+    int size, k;
+    snprintf(path, sizeof path, "%s/summary.json", s->folder);
+    mpm_io_json_begin(&j, path, fault);
+    mpm_io_json_integer(&j, "crossings", r->points);
+    for (k = 0; k < r->points; k++) {
+        snprintf(name, sizeof name, "crossing_%d_gc_J_m2", k + 1);
+        mpm_io_json_number(&j, name, r->point[k][0]);
+        snprintf(name, sizeof name, "crossing_%d_gdot_J_m2_us", k + 1);
+        mpm_io_json_number(&j, name, r->point[k][1]);
+    }
+    for (size = 0; size < 2; size++) {
+        const calibration_side *side = &r->side[size];
+        snprintf(name, sizeof name, "size_%d", size + 1);
+        mpm_io_json_open(&j, name);
+        mpm_io_json_number(&j, "diameter_um", q->diameter[size]);
+        mpm_io_json_number(&j, "velocity_m_s", q->velocity[size]);
+        mpm_io_json_integer(&j, "tests", side->tests);
+        mpm_io_json_integer(&j, "bonded", side->bonded);
+        mpm_io_json_string(&j, "fit", side->status < 0 ? "none: one class only" : mpm_io_status_text(side->status));
+        if (side->status >= 0) {
+            mpm_bond_logistic_theta(&side->fit, theta);
+            for (k = 0; k < 6; k++) {
+                snprintf(name, sizeof name, "theta_%d", k);
+                mpm_io_json_number(&j, name, theta[k]);
+            }
+            mpm_io_json_integer(&j, "tests_on_the_wrong_side", side->fit.wrong);
+        }
+        mpm_io_json_close(&j);
+    }
+    mpm_io_json_string(&j, "fit_parameters", strcmp(q->scale, "log") ? "G_c, Gdot_c" : "log10 G_c, log10 Gdot_c");
+    mpm_io_json_open(&j, "options");
+    for (k = 0; k < n; k++) {
+        option_text(&o[k], text, sizeof text);
+        if (o[k].type == OPTION_REAL) mpm_io_json_number(&j, o[k].name, *(double *)o[k].value);
+        else mpm_io_json_string(&j, o[k].name, text);
+    }
+    mpm_io_json_close(&j);
+    return mpm_io_json_end(&j, fault) >= 0;
+}
+
+static void print_result(const calibration *q, const calibration_result *r, const study *s)
+{
+    int k;
+    printf("\n");
+    for (k = 0; k < 2; k++) {
+        const calibration_side *side = &r->side[k];
+        printf("  %g um at %g m/s: %ld of %ld runs bonded, %s", q->diameter[k], q->velocity[k], side->bonded, side->tests,
+               side->status < 0 ? "no boundary: one class only\n" : "");
+        if (side->status >= 0) printf("%ld on the wrong side of the fitted boundary\n", side->fit.wrong);
+    }
+    for (k = 0; k < r->points; k++)
+        printf("  the boundaries cross at G_c %.6g J/m2, Gdot_c %.4g J/m2/us\n", r->point[k][0], r->point[k][1]);
+    if (!r->points) printf("  the boundaries do not cross in this range\n");
+    printf("  %s/tasks.csv, classes.png, summary.json\n", s->folder);
+}
+
+static int collect(const calibration *q, const study *s, const option *o, int n, char *message, size_t room)
+{
+    static calibration_result r;
+    char path[MPM_IO_PATH];
+    mpm_fault fault;
+    calibration_collect(q, s, &r);
+    if (r.side[0].tests + r.side[1].tests == 0) {
+        snprintf(message, room, "no finished task in %.300s/runs with these options", s->folder);
+        return 0;
+    }
+    snprintf(path, sizeof path, "%s/classes.png", s->folder);
+    if (!write_tasks(q, s, &fault) || !calibration_draw(q, &r, path, "examples/calibrate.c", &fault) ||
+        !write_summary(q, &r, s, o, n, &fault)) {
+        mpm_io_fault_text(message, room, &fault);
+        return 0;
+    }
+    if (!s->quiet) print_result(q, &r, s);
+    return 1;
+}
+
+static int check(const calibration *q, char *m, size_t n)
+{
+    const impact_case a = calibration_case(q, 0, 0), b = calibration_case(q, 1, 0);
+    int k;
+    if (!(impact_knows("thesis|large", "substrate", q->substrate, m, n) &&
+          impact_knows("log|linear", "scale", q->scale, m, n) && impact_knows("thesis|stays", "rule", q->rule, m, n) &&
+          impact_wants(q->gc[0] > 0, "gc-low", q->gc[0], "must be > 0 J/m2", m, n) &&
+          impact_wants(q->gc[1] > q->gc[0] && q->gc[1] < 1e30, "gc-high", q->gc[1], "must be over --gc-low", m, n) &&
+          impact_wants(q->gdot[0] > 0, "gdot-low", q->gdot[0], "must be > 0 J/m2/us", m, n) &&
+          impact_wants(q->gdot[1] > q->gdot[0] && q->gdot[1] < 1e30, "gdot-high", q->gdot[1], "must be over --gdot-low", m, n) &&
+          impact_wants(q->columns >= 5, "columns", (double)q->columns, "must be 5 or more", m, n) &&
+          impact_wants(q->rows >= 5, "rows", (double)q->rows, "must be 5 or more", m, n) &&
+          impact_wants(q->columns < CALIBRATION_NODES && calibration_nodes(q) <= CALIBRATION_NODES, "columns",
+                       (double)q->columns, "makes more than 4000 pairs", m, n) &&
+          impact_wants(q->stays > 0, "stays", q->stays, "must be > 0 m/s", m, n)))
+        return 0;
+    for (k = 0; k < 2; k++)
+        if (!impact_wants(q->pbcp[k] >= 0, k ? "pbcp-2" : "pbcp-1", q->pbcp[k], "must be >= 0 %", m, n) ||
+            !impact_wants(q->restitution[k] >= 0, k ? "restitution-2" : "restitution-1", q->restitution[k],
+                          "must be >= 0", m, n) ||
+            !impact_wants(q->velocity[k] > 0, k ? "velocity-2" : "velocity-1", q->velocity[k], "must be > 0 m/s", m, n))
+            return 0;
+    return impact_check(&a, m, n) && impact_check(&b, m, n);
+}
+
+/* The options of a case but those that the sweep sets itself. */
+static int case_options(impact_case *c, option *o)
+{
+    static const char *const own[4] = {"diameter", "velocity", "gc", "gdot"};
+    int n = study_case_options(c, o), k, w;
+    for (w = 0; w < 4; w++) {
+        for (k = 0; strcmp(o[k].name, own[w]); k++) continue;
+        for (n--; k < n; k++) o[k] = o[k + 1];
+    }
+    return n;
+}
+
+int main(int argc, char **argv)
+{
+    calibration q = calibration_default();
+    study s = study_of("build/calibrate-out");
+    option o[STUDY_OPTIONS];
+    char message[400];
+    long task = -1, tasks;
+    int n, parsed, status = 1, listing = 0, collecting = 0, whole = 0;
+    n = case_options(&q.base, o);
+    study_option(o, &n, "substrate", OPTION_TEXT, &q.substrate, "thesis|large: source A's sizes, or 5 x 2.5 diameters");
+    study_option(o, &n, "gc-low", OPTION_REAL, &q.gc[0], "range of G_c, J/m2");
+    study_option(o, &n, "gc-high", OPTION_REAL, &q.gc[1], "");
+    study_option(o, &n, "gdot-low", OPTION_REAL, &q.gdot[0], "range of Gdot_c, J/m2/us");
+    study_option(o, &n, "gdot-high", OPTION_REAL, &q.gdot[1], "");
+    study_option(o, &n, "columns", OPTION_LONG, &q.columns, "values of G_c");
+    study_option(o, &n, "rows", OPTION_LONG, &q.rows, "values of Gdot_c");
+    study_option(o, &n, "scale", OPTION_TEXT, &q.scale, "log|linear: the steps, and what the fit sees");
+    study_option(o, &n, "plain", OPTION_FLAG, &q.plain, "run every pair, not only where the class changes");
+    study_option(o, &n, "diameter-1", OPTION_REAL, &q.diameter[0], "um");
+    study_option(o, &n, "velocity-1", OPTION_REAL, &q.velocity[0], "m/s");
+    study_option(o, &n, "diameter-2", OPTION_REAL, &q.diameter[1], "um");
+    study_option(o, &n, "velocity-2", OPTION_REAL, &q.velocity[1], "m/s");
+    study_option(o, &n, "rule", OPTION_TEXT, &q.rule, "thesis|stays: what counts as bonded, see critical_velocity");
+    study_option(o, &n, "pbcp-1", OPTION_REAL, &q.pbcp[0], "rule thesis: least PBCP, %; 0: source A's for the grid");
+    study_option(o, &n, "pbcp-2", OPTION_REAL, &q.pbcp[1], "");
+    study_option(o, &n, "restitution-1", OPTION_REAL, &q.restitution[0], "rule thesis: highest rebound ratio; 0: source A's");
+    study_option(o, &n, "restitution-2", OPTION_REAL, &q.restitution[1], "");
+    study_option(o, &n, "stays", OPTION_REAL, &q.stays, "rule stays: the late mean velocity is below, m/s");
+    study_option(o, &n, "whole-time", OPTION_FLAG, &whole, "do not end a run early when the particle has left");
+    study_option(o, &n, "limit", OPTION_LONG, &s.limit, "stop after so many new runs; < 0: never");
+    study_option(o, &n, "list", OPTION_FLAG, &listing, "print the tasks that are not done");
+    study_option(o, &n, "task", OPTION_LONG, &task, "do this task only; < 0: all");
+    study_option(o, &n, "collect", OPTION_FLAG, &collecting, "fit and draw what is done, run nothing");
+    study_option(o, &n, "out", OPTION_TEXT, &s.folder, "output folder");
+    study_option(o, &n, "quiet", OPTION_FLAG, &s.quiet, "no progress line, no table");
+    parsed = options_parse(argc, argv, "The bond parameters at which two sizes just bond: sweep, boundaries, crossing.\n"
+                           "Writes tasks.csv, classes.png and summary.json; run again after an interruption, it goes on.", o, n);
+    if (parsed) return parsed < 0;
+    if (!check(&q, message, sizeof message)) return fail(message);
+    calibration_tolerances(q.base.cell, q.base.spacing, q.pbcp, q.restitution);
+    s.early = !whole;
+    tasks = 2 * calibration_nodes(&q);
+    if (listing) return list(&q, &s);
+    if (task >= tasks) {
+        snprintf(message, sizeof message, "--task %ld: there are %ld, from 0", task, tasks);
+        return fail(message);
+    }
+    if (task >= 0) {
+        const impact_case c = calibration_case(&q, (int)(task / calibration_nodes(&q)), task % calibration_nodes(&q));
+        double value[STUDY_VALUES];
+        s.planned = 1;
+        status = study_need(&s, &c, value, message, sizeof message);
+        study_progress_end(&s);
+        return status > 0 ? 0 : fail(message);
+    }
+    if (!collecting) {
+        status = calibration_run(&q, &s, message, sizeof message);
+        study_progress_end(&s);
+    }
+    if (status == 0) return fail(message);
+    if (status < 0) {
+        printf("stopped after %ld new runs; run again to go on\n", s.fresh);
+        return 3;
+    }
+    return collect(&q, &s, o, n, message, sizeof message) ? 0 : fail(message);
+}

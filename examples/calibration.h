@@ -1,0 +1,297 @@
+/* calibration.h - which pairs (G_c, Gdot_c) bond two particle sizes at their critical velocities: a sweep over
+   kept runs, the boundary of each size and where the two cross (source A, 4.1.2 and 5.1).
+   SPDX-License-Identifier: MIT */
+#ifndef CALIBRATION_H
+#define CALIBRATION_H
+
+#include "critical.h"
+
+#define CALIBRATION_NODES 4000 /* of one size */
+
+/* The sweep: columns x rows pairs, for two sizes. Task number (size * rows + row) * columns + column. */
+typedef struct calibration {
+    impact_case base;               /* what both sizes share */
+    const char *substrate, *scale, *rule; /* log|linear; thesis|stays */
+    double gc[2], gdot[2];          /* ranges, J/m2, J/m2/us */
+    long columns, rows;             /* pairs along G_c, Gdot_c */
+    int plain;                      /* 1: every pair; 0: only where the class changes */
+    double diameter[2], velocity[2]; /* um, m/s */
+    double pbcp[2], restitution[2]; /* bonded: PBCP at least [%], rebound/impact velocity at most; 0: source A's */
+    double stays;                   /* rule stays, m/s */
+} calibration;
+
+/* Source A's tolerances (Table 5.2) for the grid nearest to this one. */
+static inline void calibration_tolerances(double cell, double spacing, double pbcp[2], double restitution[2])
+{
+    static const double table[9][6] = {
+        {1.5, 0.5, 8.5, 0.0031, 8.1, 0.002},  {1.5, 0.35, 8.0, 0.003, 9.2, 0.002},   {1.5, 0.3, 8.5, 0.003, 9.2, 0.002},
+        {1.0, 0.35, 6.0, 0.003, 8.1, 0.003},  {1.0, 0.25, 6.1, 0.0031, 8.3, 0.002},  {1.0, 0.2, 6.1, 0.003, 8.3, 0.002},
+        {0.7, 0.25, 4.7, 0.006, 4.9, 0.007},  {0.7, 0.175, 4.6, 0.003, 5.3, 0.0031}, {0.7, 0.15, 4.8, 0.003, 5.3, 0.0031}};
+    int k, best = 0;
+    double least = HUGE_VAL;
+    for (k = 0; k < 9; k++) {
+        const double far = fabs(log(cell / table[k][0])) + 0.1 * fabs(log(spacing / table[k][1]));
+        if (far >= least) continue;
+        least = far;
+        best = k;
+    }
+    for (k = 0; k < 2; k++) {
+        if (!(pbcp[k] > 0)) pbcp[k] = table[best][2 + 2 * k];
+        if (!(restitution[k] > 0)) restitution[k] = table[best][3 + 2 * k];
+    }
+}
+
+static inline calibration calibration_default(void)
+{
+    calibration q;
+    memset(&q, 0, sizeof q);
+    q.base = study_case_default();
+    q.substrate = "thesis";
+    q.scale = "log";
+    q.rule = "thesis";
+    q.gc[0] = 500;
+    q.gc[1] = 10000;
+    q.gdot[0] = 1e5;
+    q.gdot[1] = 2e6;
+    q.columns = 25;
+    q.rows = 15;
+    q.diameter[0] = 14;
+    q.diameter[1] = 30;
+    q.velocity[0] = 810;
+    q.velocity[1] = 770;
+    q.stays = critical_rule_default().stays;
+    return q;
+}
+
+static inline long calibration_nodes(const calibration *q) { return q->columns * q->rows; }
+
+/* Node `number` of n between low and high. */
+static inline double calibration_at(const calibration *q, const double *range, long number, long n)
+{
+    const double t = n > 1 ? (double)number / (double)(n - 1) : 0;
+    const double v = strcmp(q->scale, "log") ? range[0] + t * (range[1] - range[0])
+                                             : range[0] * pow(range[1] / range[0], t);
+    char text[32]; /* six digits, so that lists show what was run */
+    snprintf(text, sizeof text, "%.6g", v);
+    return strtod(text, NULL);
+}
+
+static inline double calibration_gc(const calibration *q, long node)
+{
+    return calibration_at(q, q->gc, node % q->columns, q->columns);
+}
+
+static inline double calibration_gdot(const calibration *q, long node)
+{
+    return calibration_at(q, q->gdot, node / q->columns, q->rows);
+}
+
+/* A number as the fit sees it. */
+static inline double calibration_x(const calibration *q, double v) { return strcmp(q->scale, "log") ? v : log10(v); }
+static inline double calibration_from(const calibration *q, double x) { return strcmp(q->scale, "log") ? x : pow(10, x); }
+
+static inline impact_case calibration_case(const calibration *q, int size, long node)
+{
+    impact_case c = q->base;
+    c.diameter = q->diameter[size];
+    c.velocity = q->velocity[size];
+    c.gc = calibration_gc(q, node);
+    c.gdot = calibration_gdot(q, node);
+    study_complete(&c, q->substrate);
+    return c;
+}
+
+static inline double calibration_ratio(const calibration *q, int size, const double *value)
+{
+    return value[STUDY_V_REST] / q->velocity[size];
+}
+
+static inline int calibration_bonds(const calibration *q, int size, const double *value)
+{
+    if (!strcmp(q->rule, "stays")) {
+        critical_rule r = critical_rule_default();
+        r.name = q->rule;
+        r.stays = q->stays;
+        return critical_bonds(&r, q->diameter[size], value);
+    }
+    return value[STUDY_PBCP] >= q->pbcp[size] && calibration_ratio(q, size, value) <= q->restitution[size];
+}
+
+/* What is known of one size: the class of each node (-1: not run) and whether the sweep wants it. */
+typedef struct calibration_map {
+    signed char bonds[CALIBRATION_NODES], wanted[CALIBRATION_NODES];
+} calibration_map;
+
+/* Wants the corners of a part of the grid, and where its nodes are of both classes what lies in between. */
+static inline void calibration_refine(const calibration *q, calibration_map *m, long i0, long i1, long j0, long j1)
+{
+    const long im = (i0 + i1) / 2, jm = (j0 + j1) / 2;
+    long i, j;
+    int seen[2] = {0, 0};
+    m->wanted[j0 * q->columns + i0] = m->wanted[j0 * q->columns + i1] = 1;
+    m->wanted[j1 * q->columns + i0] = m->wanted[j1 * q->columns + i1] = 1;
+    for (j = j0; j <= j1; j++)
+        for (i = i0; i <= i1; i++)
+            if (m->bonds[j * q->columns + i] >= 0) seen[m->bonds[j * q->columns + i]] = 1;
+    if (!seen[0] || !seen[1] || (i1 - i0 <= 1 && j1 - j0 <= 1)) return;
+    calibration_refine(q, m, i0, i1 - i0 > 1 ? im : i1, j0, j1 - j0 > 1 ? jm : j1);
+    if (i1 - i0 > 1) calibration_refine(q, m, im, i1, j0, j1 - j0 > 1 ? jm : j1);
+    if (j1 - j0 > 1) calibration_refine(q, m, i0, i1 - i0 > 1 ? im : i1, jm, j1);
+    if (i1 - i0 > 1 && j1 - j0 > 1) calibration_refine(q, m, im, i1, jm, j1);
+}
+
+/* Reads what is finished and decides what is wanted: everything, or a net of 5 x 5 nodes and from there
+   wherever the class changes. Returns how many wanted nodes have not been run. */
+static inline long calibration_look(const calibration *q, const study *s, int size, calibration_map *m)
+{
+    const long all = calibration_nodes(q);
+    double value[STUDY_VALUES];
+    long k, j, missing = 0;
+    for (k = 0; k < all; k++) {
+        const impact_case c = calibration_case(q, size, k);
+        m->bonds[k] = (signed char)(study_find(s, &c, value) ? calibration_bonds(q, size, value) : -1);
+        m->wanted[k] = (signed char)(q->plain != 0);
+    }
+    for (j = 0; j < 4 && !q->plain; j++)
+        for (k = 0; k < 4; k++)
+            calibration_refine(q, m, k * (q->columns - 1) / 4, (k + 1) * (q->columns - 1) / 4, j * (q->rows - 1) / 4,
+                               (j + 1) * (q->rows - 1) / 4);
+    for (k = 0; k < all; k++) missing += m->wanted[k] && m->bonds[k] < 0;
+    return missing;
+}
+
+/* The boundary of one size. */
+typedef struct calibration_side {
+    calibration_map map;
+    mpm_logistic fit;
+    mpm_status status;  /* of the fit; MPM_ERR_ARGUMENT with one class only */
+    long tests, bonded;
+} calibration_side;
+
+typedef struct calibration_result {
+    calibration_side side[2];
+    double point[4][2];  /* crossings: G_c, Gdot_c */
+    int points;
+} calibration_result;
+
+/* Fits both sizes and crosses their boundaries. */
+static inline void calibration_collect(const calibration *q, const study *s, calibration_result *r)
+{
+    static double x1[CALIBRATION_NODES], x2[CALIBRATION_NODES];
+    static int outcome[CALIBRATION_NODES];
+    double low[2], high[2];
+    long k;
+    int size;
+    r->points = 0;
+    for (size = 0; size < 2; size++) {
+        calibration_side *side = &r->side[size];
+        calibration_look(q, s, size, &side->map);
+        side->tests = side->bonded = 0;
+        for (k = 0; k < calibration_nodes(q); k++) {
+            if (side->map.bonds[k] < 0) continue;
+            x1[side->tests] = calibration_x(q, calibration_gc(q, k));
+            x2[side->tests] = calibration_x(q, calibration_gdot(q, k));
+            outcome[side->tests++] = side->map.bonds[k];
+            side->bonded += side->map.bonds[k];
+        }
+        side->status = mpm_bond_logistic_fit(&side->fit, x1, x2, outcome, side->tests, 1e-4, 200, NULL);
+    }
+    low[0] = calibration_x(q, q->gc[0]);
+    low[1] = calibration_x(q, q->gdot[0]);
+    high[0] = calibration_x(q, q->gc[1]);
+    high[1] = calibration_x(q, q->gdot[1]);
+    if (r->side[0].status >= 0 && r->side[1].status >= 0)
+        r->points = mpm_bond_logistic_cross(&r->side[0].fit, &r->side[1].fit, low, high, r->point);
+    for (k = 0; k < r->points; k++)
+        for (size = 0; size < 2; size++) r->point[k][size] = calibration_from(q, r->point[k][size]);
+}
+
+/* Runs everything the sweep wants, one task after the other. As study_need. */
+static inline int calibration_run(const calibration *q, study *s, char *message, size_t n)
+{
+    static calibration_map map;
+    double value[STUDY_VALUES];
+    int size, status;
+    long k, missing;
+    for (size = 0; size < 2; size++)
+        while ((missing = calibration_look(q, s, size, &map)) > 0) {
+            s->planned = s->done + missing;
+            for (k = 0; k < calibration_nodes(q); k++) {
+                const impact_case c = calibration_case(q, size, k);
+                if (!map.wanted[k] || map.bonds[k] >= 0) continue;
+                if ((status = study_need(s, &c, value, message, n)) <= 0) return status;
+            }
+        }
+    return 1;
+}
+
+/* The classes of both sizes in the plane of the parameters, with both boundaries and their crossings. */
+static inline int calibration_draw(const calibration *q, const calibration_result *r, const char *path, const char *note,
+                                   mpm_fault *fault)
+{
+    enum { STEPS = 200 };
+    static mpm_real x[2][2][CALIBRATION_NODES], y[2][2][CALIBRATION_NODES], bx[2][2 * STEPS + 1], by[2][2 * STEPS + 1];
+    mpm_real px[4], py[4];
+    mpm_io_curve curve[2][5];
+    mpm_io_plot_desc d[2];
+    char title[2][80], name[2][40];
+    const double high = calibration_x(q, q->gdot[1]), low = calibration_x(q, q->gdot[0]);
+    double root[2];
+    long k;
+    int size, which, t;
+    for (size = 0; size < 2; size++) /* the lower roots, a break, the upper roots */
+        for (which = 0; which < 2; which++)
+            for (t = 0; t < STEPS; t++) {
+                const double x1 = calibration_x(q, q->gc[0]) +
+                                  t * (calibration_x(q, q->gc[1]) - calibration_x(q, q->gc[0])) / (STEPS - 1);
+                const int at = which * (STEPS + 1) + t;
+                const int roots = r->side[size].status >= 0 ? mpm_bond_logistic_roots(&r->side[size].fit, x1, low, high, root) : 0;
+                bx[size][at] = (mpm_real)calibration_from(q, x1);
+                by[size][at] = (mpm_real)(which < roots ? calibration_from(q, root[which]) : nan(""));
+                bx[size][STEPS] = by[size][STEPS] = (mpm_real)nan("");
+            }
+    for (t = 0; t < r->points; t++) {
+        px[t] = (mpm_real)r->point[t][0];
+        py[t] = (mpm_real)r->point[t][1];
+    }
+    for (size = 0; size < 2; size++) {
+        memset(curve[size], 0, sizeof curve[size]);
+        for (k = 0; k < calibration_nodes(q); k++) {
+            const int class_of = r->side[size].map.bonds[k];
+            if (class_of < 0) continue;
+            x[size][class_of][curve[size][class_of].count] = (mpm_real)calibration_gc(q, k);
+            y[size][class_of][curve[size][class_of].count++] = (mpm_real)calibration_gdot(q, k);
+        }
+        for (which = 0; which < 2; which++) {
+            curve[size][which].name = which ? "bonded" : "not bonded";
+            curve[size][which].x = x[size][which];
+            curve[size][which].y = y[size][which];
+            curve[size][which].mark = MPM_IO_DOTS;
+            curve[size][which].color = which;
+            curve[size][2 + which].x = bx[which];
+            curve[size][2 + which].y = by[which];
+            curve[size][2 + which].count = 2 * STEPS + 1;
+            curve[size][2 + which].mark = which == size ? MPM_IO_CURVE : MPM_IO_DASHED;
+            curve[size][2 + which].color = 2 + which;
+            snprintf(name[which], sizeof name[which], "boundary, %g um", q->diameter[which]);
+            curve[size][2 + which].name = r->side[which].status >= 0 ? name[which] : NULL;
+        }
+        curve[size][4].name = r->points > 0 ? "crossing" : NULL;
+        curve[size][4].x = px;
+        curve[size][4].y = py;
+        curve[size][4].count = (size_t)r->points;
+        curve[size][4].mark = MPM_IO_DOTS;
+        curve[size][4].color = 5;
+        d[size] = mpm_io_plot_desc_default();
+        d[size].curves = curve[size];
+        d[size].curve_count = 5;
+        d[size].log_x = d[size].log_y = !strcmp(q->scale, "log");
+        d[size].x_label = "G_c, J/m2";
+        d[size].y_label = "Gdot_c, J/m2/us";
+        snprintf(title[size], sizeof title[size], "%g um at %g m/s", q->diameter[size], q->velocity[size]);
+        d[size].title = title[size];
+    }
+    return study_plots(path, d, 2, 2, note, fault);
+}
+
+#endif

@@ -28,22 +28,33 @@ static inline int study_case_options(impact_case *c, option *o)
     int n = 0;
     study_option(o, &n, "diameter", OPTION_REAL, &c->diameter, "particle diameter, um");
     study_option(o, &n, "velocity", OPTION_REAL, &c->velocity, "impact velocity, m/s");
+    study_option(o, &n, "angle", OPTION_REAL, &c->angle, "velocity from the surface normal, degrees (3d, symmetry half or full)");
+    study_option(o, &n, "shape", OPTION_TEXT, &c->shape, "of the particle: sphere|ellipsoid");
+    study_option(o, &n, "aspect", OPTION_REAL, &c->aspect, "of an ellipsoid: height over width, at the volume of the sphere");
+    study_option(o, &n, "material", OPTION_TEXT, &c->material, "of the particle");
+    study_option(o, &n, "substrate-material", OPTION_TEXT, &c->substrate_material, "of the substrate; empty: as the particle");
+    study_option(o, &n, "model", OPTION_TEXT, &c->model, "strength of both: preset|elastic|linear|jc|scg|ptw");
+    study_option(o, &n, "temperature", OPTION_REAL, &c->temperature, "at the start, K");
+    study_option(o, &n, "substrate-temperature", OPTION_REAL, &c->substrate_temperature, "K; 0: as the particle");
     study_option(o, &n, "cell", OPTION_REAL, &c->cell, "grid cell edge, um");
     study_option(o, &n, "spacing", OPTION_REAL, &c->spacing, "distance of material points, um");
     study_option(o, &n, "substrate-diameter", OPTION_REAL, &c->substrate_diameter, "um; 0: by --substrate");
     study_option(o, &n, "substrate-height", OPTION_REAL, &c->substrate_height, "um; 0: by --substrate");
-    study_option(o, &n, "time", OPTION_REAL, &c->time, "simulated time, ns; 0: 80, and longer beyond 30 um");
+    study_option(o, &n, "time", OPTION_REAL, &c->time, "simulated time, ns; 0: 80, in proportion beyond 30 um");
     study_option(o, &n, "dt-factor", OPTION_REAL, &c->dt_factor, "time step over the critical step of a 0.5 um cell");
-    study_option(o, &n, "bond", OPTION_TEXT, &c->bond, "energy|none");
+    study_option(o, &n, "bond", OPTION_TEXT, &c->bond, "energy|strain|none");
+    study_option(o, &n, "bond-average", OPTION_TEXT, &c->bond_average, "D of a node from its surface points: mean|weighted|literal");
     study_option(o, &n, "gc", OPTION_REAL, &c->gc, "critical bond energy, J/m2");
     study_option(o, &n, "gdot", OPTION_REAL, &c->gdot, "critical bond energy rate, J/m2/us");
+    study_option(o, &n, "eps-c", OPTION_REAL, &c->eps_c, "strain bond: critical strain");
+    study_option(o, &n, "epsdot-c", OPTION_REAL, &c->epsdot_c, "strain bond: critical strain rate, 1/us");
+    study_option(o, &n, "shell", OPTION_REAL, &c->shell, "thickness of the surface that contacts and bonds, spacings");
     study_option(o, &n, "floor", OPTION_REAL, &c->floor, "least value of the rate factor of the bond threshold");
-    study_option(o, &n, "symmetry", OPTION_TEXT, &c->symmetry, "quarter|full, in 3d");
+    study_option(o, &n, "symmetry", OPTION_TEXT, &c->symmetry, "in 3d: full|half|quarter");
     study_option(o, &n, "geometry", OPTION_TEXT, &c->geometry, "3d|axisymmetric");
     study_option(o, &n, "functions", OPTION_TEXT, &c->functions, "shape functions: linear|gimp");
     study_option(o, &n, "friction", OPTION_REAL, &c->friction, "Coulomb coefficient between the bodies");
     study_option(o, &n, "normal", OPTION_TEXT, &c->normal, "contact normal: ranked|mvg|average|vertical");
-    study_option(o, &n, "material", OPTION_TEXT, &c->material, "material of both bodies");
     study_option(o, &n, "plasticity", OPTION_TEXT, &c->plasticity, "return mapping: consistent|staged");
     study_option(o, &n, "gap", OPTION_REAL, &c->gap, "distance of the bodies at the start, um");
     study_option(o, &n, "margin", OPTION_REAL, &c->margin, "free grid around the bodies, particle diameters");
@@ -185,29 +196,6 @@ static inline void study_distance(const mpm_world *w, double *height, double *ve
     *velocity = sum[0][2] / sum[0][0] - sum[1][2] / sum[1][0];
 }
 
-/* One step with bonding; the grid's memory grows when ejected points need it. */
-static inline mpm_status study_step(impact *s)
-{
-    mpm_world *w = &s->world;
-    const mpm_real dt = s->dt;
-    mpm_status status;
-    while ((status = mpm_locate(w)) == MPM_ERR_FULL)
-        if ((status = mpm_grow(w, NULL, 0)) < 0) break;
-    if (status < 0) return status;
-    mpm_p2g(w);
-    mpm_forces(w, dt);
-    mpm_grid_update(w, dt);
-    mpm_contact_find(w);
-    mpm_bond_grow(&s->bond, w, dt);
-    mpm_bond_nodes(&s->bond, w);
-    mpm_contact_apply(w, dt);
-    mpm_g2p(w, dt);
-    mpm_musl(w, dt);
-    if ((status = mpm_stress(w, dt)) < 0) return status;
-    mpm_move(w, dt);
-    return MPM_OK;
-}
-
 /* Runs a case to its end. With s->early it ends as soon as the outcome is decided: in a twentieth of
    the time no pair was held, and the particle leaves the substrate at more than 5 m/s, all points or
    only those up to 60 m/s, with a mean that changed by less than 1 % in that time. Returns 1, or 0
@@ -228,7 +216,7 @@ static inline int study_run(study *s, const impact_case *c, double *value, char 
             study_distance(w, &start, &velocity);
             late_time = (double)w->time;
         }
-        if (study_step(&run) < 0) {
+        if (impact_step(&run) < 0) {
             mpm_io_fault_text(message, n, &run.world.fault);
             mpm_free(&run.world);
             return 0;
@@ -250,8 +238,8 @@ static inline int study_run(study *s, const impact_case *c, double *value, char 
     value[STUDY_PBCP] = r.bond.pbcp;
     value[STUDY_ABP] = r.bond.abp;
     value[STUDY_CONTACTED] = (double)r.bond.contacted;
-    value[STUDY_V_REST] = r.rebound.filtered - r.substrate_drift;
-    value[STUDY_V_MEAN] = r.rebound.mean - r.substrate_drift;
+    value[STUDY_V_REST] = r.filtered_relative;
+    value[STUDY_V_MEAN] = r.relative;
     value[STUDY_V_LATE] = late_time > 0 && (double)run.world.time > late_time
                               ? (height - start) / ((double)run.world.time - late_time) : value[STUDY_V_MEAN];
     value[STUDY_DRIFT] = r.substrate_drift;
@@ -261,7 +249,7 @@ static inline int study_run(study *s, const impact_case *c, double *value, char 
     value[STUDY_EPS] = r.particle.plastic_strain_mean;
     value[STUDY_WORK] = r.particle.plastic_work_mean;
     value[STUDY_T_MAX] = r.all.temperature_max;
-    value[STUDY_EJECTED] = r.rebound.ejected_mass / r.particle.mass;
+    value[STUDY_EJECTED] = r.ejected_fraction;
     value[STUDY_UNACCOUNTED] = r.energy_unaccounted;
     value[STUDY_END] = (double)run.world.time * 1e3;
     value[STUDY_STEPS] = (double)run.world.steps;

@@ -136,8 +136,8 @@ MPM_API void mpm_bond_nodes(const mpm_bond *b, mpm_world *w);
 typedef struct mpm_bond_measure {
     long contacted;      /* surface points with D > 0 */
     long bonded;         /* ... with D >= 1 */
-    double pbcp;         /* bonded / contacted [%] (A 5.1); 0 without contact */
-    double abp;          /* mean D over contacted points */
+    double pbcp;         /* bonded / contacted [%] (A 5.1), by area: in axisymmetry a point is a ring; 0 without contact */
+    double abp;          /* mean D over contacted points, by area */
     double bonded_mass, contacted_mass;
     double bonded_area, contacted_area; /* [length^2]; in plane strain per depth */
 } mpm_bond_measure;
@@ -485,7 +485,7 @@ static inline void mpm__measure_add(const mpm_world *w, int32_t body, const mpm_
         m->contacted++;
         m->contacted_mass += mass;
         m->contacted_area += mass / column;
-        m->abp += (double)q->bond[i];
+        m->abp += mass / column * (double)q->bond[i];
         if (q->bond[i] < 1) continue;
         m->bonded++;
         m->bonded_mass += mass;
@@ -497,8 +497,8 @@ static inline void mpm__measure_add(const mpm_world *w, int32_t body, const mpm_
 static inline void mpm__measure_end(mpm_bond_measure *m)
 {
     if (!m->contacted) return;
-    m->pbcp = 100.0 * (double)m->bonded / (double)m->contacted;
-    m->abp /= (double)m->contacted;
+    m->pbcp = 100.0 * m->bonded_area / m->contacted_area;
+    m->abp /= m->contacted_area;
 }
 
 MPM_API mpm_bond_measure mpm_bond_measure_body(const mpm_world *w, int32_t body)

@@ -178,6 +178,8 @@ MPM_API double mpm_units_area_energy(const mpm_units *u);     /* J/m^2 */
 
 /* ---- the constitutive block ---------------------------------------------------------------- */
 
+#define MPM_USER_FIELDS 8 /* most user fields a point can have */
+
 /* What a material sees: `count` consecutive points of one body, as plain arrays. The strain
    increment and the rotation increment are those of the step k -> k+1 and the density is already
    that of k+1; everything else is the state at k, to be brought to k+1 in place. */
@@ -194,6 +196,8 @@ typedef struct mpm_block {
     mpm_real *plastic_strain;     /* effective plastic strain */
     mpm_real *plastic_rate;       /* effective plastic strain rate of this step [1/time] */
     mpm_real *plastic_work;       /* integral of flow stress d(plastic strain) [stress] (A 4.15) */
+    mpm_real *user[MPM_USER_FIELDS]; /* the points' user fields, for a law's own history; NULL beyond
+                                     user_fields of the description. Test: 24_manufactured */
     mpm_fault *fault;             /* filled by the material when it fails; index within the block */
 } mpm_block;
 
@@ -287,8 +291,6 @@ typedef struct mpm_desc {
     int32_t nodes;           /* capacity of (node, body) pairs; 0: estimated */
     int user_fields;         /* further mpm_real per point, 0 .. MPM_USER_FIELDS, carried along */
 } mpm_desc;
-
-#define MPM_USER_FIELDS 8
 
 MPM_API mpm_desc mpm_desc_default(void);
 
@@ -2408,6 +2410,7 @@ static inline mpm_status mpm__constitute(mpm_world *w, const mpm_body *body, int
     b.plastic_strain = q->plastic_strain + first;
     b.plastic_rate = q->plastic_rate + first;
     b.plastic_work = q->plastic_work + first;
+    for (i = 0; i < MPM_USER_FIELDS; i++) b.user[i] = i < w->desc.user_fields ? q->user[i] + first : NULL;
     b.fault = &w->fault;
     s = body->desc.stress(body->desc.material, &b);
     if (s < 0) w->fault.index += first;

@@ -2167,6 +2167,7 @@ static inline int mpm__weighs(const mpm_world *w, const mpm_node *n)
     }
     for (s = rings ? 2 : 0; s < 6; s++)
         if ((n->sides >> s & 1) && w->desc.side[s] == MPM_SIDE_SYMMETRY) point /= 2;
+    if (w->desc.contact == MPM_CONTACT_WELD) point = 0; /* one velocity everywhere, without exception */
     return n->mass > w->desc.contact_cutoff * point && n->mass > w->desc.mass_cutoff * b->point_mass;
 }
 

@@ -10,9 +10,9 @@
 
    WHAT IT DOES NOT DO
      No heat conduction, no thermal expansion beyond the Grueneisen term, no temperature rise from
-     compression (only plastic work heats, as in A 3.44), no latent heat, no fracture or spall, no
-     porosity, no phase change other than the loss of strength at the melting point, no kinematic
-     hardening, no anisotropy.
+     compression unless compression_heating asks for it (otherwise only plastic work heats, as in
+     A 3.44), no latent heat, no fracture or spall, no porosity, no phase change other than the loss
+     of strength at the melting point, no kinematic hardening, no anisotropy.
 
    A COMPLETE PROGRAM
        #define MPM_IMPLEMENTATION
@@ -190,6 +190,8 @@ typedef struct mpm_material {
     mpm_real specific_heat;  /* Cp [energy/(mass K)], > 0 where plastic work heats */
     mpm_real temperature;    /* initial [K], >= 0 */
     mpm_real heat_fraction;  /* chi, the part of plastic work that heats (A 3.44), 0 .. 1 */
+    int compression_heating; /* 1: compression (dT = -Gamma0 T dV/V0) and the work of the bulk viscosity heat too; 0:
+                                they do not, as in source A (default). Test: 11_update "compression" */
     mpm_real young, poisson; /* for wave speeds and the linear equation of state */
 
     mpm_real shear_modulus;        /* mu0: at T = 0 for MTS, at 300 K and p = 0 otherwise [stress] */
@@ -1369,6 +1371,19 @@ static inline void mpm__ptw_commit(const mpm_material *m, const mpm_block *b, co
     }
 }
 
+/* The temperature along the isentrope of Gamma rho = Gamma0 rho0, T exp(Gamma0 V/V0) = constant, and the heat of
+   the bulk viscosity q. B is Gamma0, or 0 where pressure knows no temperature. */
+static inline void mpm__ptw_heat_volume(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a,
+                                        mpm_real B, const mpm_real *q)
+{
+    int i, k = a->first;
+    for (i = 0; i < a->count; i++) {
+        mpm_real dv = m->density / b->density[k + i] * a->volume[i] / (1 + a->volume[i]);
+        b->temperature[k + i] += b->temperature[k + i] * mpm__ptw_expm1(-B * dv);
+        b->temperature[k + i] -= q[i] * dv / (m->density * m->specific_heat);
+    }
+}
+
 /* Pressure with the energy that its own work changes (A 3.40 - 3.43), then the full stress.
    All energies and volumes here are per initial volume. */
 static inline void mpm__ptw_close(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a)
@@ -1379,7 +1394,7 @@ static inline void mpm__ptw_close(const mpm_material *m, const mpm_block *b, con
     mpm_real slope = m->hugoniot_slope - 1;
     mpm_real rho0 = m->density, inverse_rho0 = 1 / rho0, cell_per_step = b->cell / b->dt;
     mpm_real first = m->viscosity_linear * mpm__ptw_sqrt(stiff / rho0), second = m->viscosity_quadratic;
-    mpm_real work[MPM__PTW_LANES], mean[MPM__PTW_LANES], *energy = b->energy + k;
+    mpm_real work[MPM__PTW_LANES], mean[MPM__PTW_LANES], viscous[MPM__PTW_LANES], *energy = b->energy + k;
     const mpm_real *density = b->density + k;
     for (i = 0; i < a->count; i++)
         work[i] = (a->rotated[0][i] + a->trial[0][i]) * a->strain[0][i] +
@@ -1400,7 +1415,9 @@ static inline void mpm__ptw_close(const mpm_material *m, const mpm_block *b, con
         mpm_real p = (A + B * E) / (1 + B * dv / 2);
         energy[i] = (E - dv / 2 * p) * inverse_rho0;
         mean[i] = -(p + q);
+        viscous[i] = q;
     }
+    if (m->compression_heating) mpm__ptw_heat_volume(m, b, a, B, viscous);
     for (j = 0; j < 3; j++)
         for (i = 0; i < a->count; i++) b->stress[j][k + i] = a->trial[j][i] + mean[i];
     for (j = 3; j < 6; j++)
@@ -1851,7 +1868,7 @@ MPM_API mpm_status mpm_material_check(const mpm_material *m, mpm_fault *fault)
     MPM__PTW_REQUIRE(mpm__ptw_positive("density", m->density, fault));
     MPM__PTW_REQUIRE(mpm__ptw_within("temperature", m->temperature, 0, big, fault));
     MPM__PTW_REQUIRE(mpm__ptw_within("heat_fraction", m->heat_fraction, 0, 1, fault));
-    if (m->strength != MPM_STRENGTH_ELASTIC && m->heat_fraction > 0)
+    if ((m->strength != MPM_STRENGTH_ELASTIC && m->heat_fraction > 0) || m->compression_heating)
         MPM__PTW_REQUIRE(mpm__ptw_positive("specific_heat", m->specific_heat, fault));
     MPM__PTW_REQUIRE(mpm__ptw_positive("young", m->young, fault));
     MPM__PTW_REQUIRE(mpm__ptw_within("poisson", m->poisson, -1, MPM_R(0.5), fault));

@@ -431,6 +431,42 @@ static void test_isentrope(void)
     CHECK_NEAR("reversible: no energy left", 2700 * (double)p.energy[0] / energy, 0, 1e-10 + 2e3 * EPS);
 }
 
+/* With compression_heating the temperature follows the isentrope, and the viscosity heats. */
+static void test_compression(void)
+{
+    mpm_material m = preset("al", "ptw", mpm_units_si());
+    double v = 1, q, T;
+    points p;
+    int i;
+    reset(&p, &m);
+    strain(&p, 0, -0.1 / 3, -0.1 / 3, -0.1 / 3, 0, 0, 0);
+    CHECK_EQUAL("compression without its heat", update(&p, &m, 0, 1, 1, NULL), MPM_OK);
+    CHECK_TRUE("... leaves the temperature", p.temperature[0] == m.temperature);
+    m.compression_heating = 1;
+    reset(&p, &m);
+    for (i = 0; i < 10; i++, v -= 0.01) {
+        strain(&p, 0, -0.01 / v / 3, -0.01 / v / 3, -0.01 / v / 3, 0, 0, 0);
+        if (update(&p, &m, 0, 1, 1, NULL) != MPM_OK) break;
+    }
+    v = 2700 / (double)p.density[0];
+    CHECK_RELATIVE("compression: T0 exp(Gamma0 (1 - V/V0))", p.temperature[0], 298 * exp(1.97 * (1 - v)), 100 * EPS);
+    strain(&p, 0, 0.05, 0.05, 0.05, 0, 0, 0);
+    update(&p, &m, 0, 1, 1, NULL);
+    v = 2700 / (double)p.density[0];
+    CHECK_RELATIVE("expansion beyond the start: the same curve", p.temperature[0], 298 * exp(1.97 * (1 - v)),
+                   100 * EPS);
+    m.viscosity_linear = 1;
+    m.strength = MPM_STRENGTH_ELASTIC;
+    reset(&p, &m);
+    strain(&p, 0, 0, 0, -1e-3, 0, 0, 0);
+    CHECK_EQUAL("with viscosity", update(&p, &m, 0, 1, 1e-6, NULL), MPM_OK);
+    q = (double)p.density[0] * 1e3 * 5386; /* the cell is 1, the rate 1e3 */
+    T = 298 * exp(1.97e-3) + q * 1e-3 / (2700 * 900);
+    CHECK_RELATIVE("compression: with the work of the viscosity", p.temperature[0], T, 100 * EPS);
+    m.specific_heat = 0;
+    CHECK_EQUAL("compression: needs a specific heat", mpm_material_check(&m, NULL), MPM_ERR_ARGUMENT);
+}
+
 static void test_viscosity(void)
 {
     mpm_material m = preset("al", "ptw", mpm_units_si());
@@ -591,6 +627,7 @@ int main(void)
     test_heat();
     test_melting();
     test_isentrope();
+    test_compression();
     test_viscosity();
     test_units();
     test_faults();

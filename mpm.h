@@ -1885,11 +1885,24 @@ MPM__KERNEL void mpm__absorb_run(mpm_world *w, const mpm_run *r, int k, int ky, 
                     t[c] = -(cn - ct) * vn * normal[c] - ct * v[c];
                     for (a = 0; a < k * ky * k; a++) F[c][a] += t[c] * N[a];
                     w->ledger.absorbed -= (double)(t[c] * v[c] * dt);
-                    w->ledger.impulse[c] += (double)(t[c] * dt);
                 }
             }
     }
+    for (c = 0; c < 3; c++)
+        for (a = 0; a < k * ky * k; a++) w->ledger.impulse[c] += (double)(F[c][a] * mpm__mirror(r, a, c, k, ky) * dt);
     mpm__scatter(w, r, k, ky, MPM__FORCE, F);
+}
+
+/* With ghosts, internal forces cross a symmetry plane: what the nodes of this side then sum to along
+   its normal comes from the mirror image. */
+static inline void mpm__mirror_force(mpm_world *w, mpm_real dt)
+{
+    const mpm_side *side = w->desc.side;
+    int32_t i;
+    int d;
+    for (d = 0; d < 3; d++)
+        if (w->ghost && (side[2 * d] == MPM_SIDE_SYMMETRY || side[2 * d + 1] == MPM_SIDE_SYMMETRY))
+            for (i = 0; i < w->nodes; i++) w->ledger.impulse[d] += (double)(w->node[i].force[d] * dt);
 }
 
 MPM_API void mpm_forces(mpm_world *w, mpm_real dt)
@@ -1900,6 +1913,7 @@ MPM_API void mpm_forces(mpm_world *w, mpm_real dt)
 #define MPM__CALL(k, ky, hoop) mpm__forces_run(w, run, k, ky, hoop)
     MPM__EACH_RUN(w, MPM__CALL);
 #undef MPM__CALL
+    mpm__mirror_force(w, dt);
 #define MPM__CALL(k, ky, hoop)                                                       \
     do {                                                                             \
         if (w->body[run->body].desc.absorb) mpm__absorb_run(w, run, k, ky, dt); \
@@ -2292,9 +2306,36 @@ MPM__KERNEL void mpm__g2p_run(mpm_world *w, const mpm_run *r, int k, int ky, mpm
     }
 }
 
+/* Points that reach through a symmetry plane take a ghost's acceleration with its sign turned: twice
+   that share of their momentum comes from the mirror image. */
+MPM__KERNEL void mpm__mirror_run(mpm_world *w, const mpm_run *r, int k, int ky, mpm_real dt)
+{
+    mpm_real A[3][MPM__SUPPORT], N[MPM__SUPPORT];
+    mpm__weights s;
+    int32_t at;
+    int n, p, a, d;
+    mpm__gather(w, r, k, ky, MPM__FORCE, 1, A);
+    MPM__EACH_PIECE(r, at, n) {
+        mpm__weigh(w, r, at, n, k, ky, &s);
+        for (p = 0; p < n; p++) {
+            const mpm_real m = 2 * dt * w->points.mass[at + p];
+            mpm__products(&s, p, k, ky, N);
+            for (d = 0; d < 3; d++)
+                for (a = 0; a < k * ky * k; a++)
+                    if (mpm__mirror(r, a, d, k, ky) < 0) w->ledger.impulse[d] += (double)(m * N[a] * A[d][a]);
+        }
+    }
+}
+
 MPM_API void mpm_g2p(mpm_world *w, mpm_real dt)
 {
 #define MPM__CALL(k, ky, hoop) mpm__g2p_run(w, run, k, ky, dt)
+    MPM__EACH_RUN(w, MPM__CALL);
+#undef MPM__CALL
+#define MPM__CALL(k, ky, hoop)                                           \
+    do {                                                                 \
+        if (run->flags & 63) mpm__mirror_run(w, run, k, ky, dt); \
+    } while (0)
     MPM__EACH_RUN(w, MPM__CALL);
 #undef MPM__CALL
 }

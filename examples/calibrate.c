@@ -149,23 +149,23 @@ static int check(const calibration *q, char *m, size_t n)
 {
     const impact_case a = calibration_case(q, 0, 0), b = calibration_case(q, 1, 0);
     int k;
-    if (!(impact_knows("thesis|large", "substrate", q->substrate, m, n) &&
-          impact_knows("log|linear", "scale", q->scale, m, n) && impact_knows("thesis|stays", "rule", q->rule, m, n) &&
-          impact_wants(q->gc[0] > 0, "gc-low", q->gc[0], "must be > 0 J/m2", m, n) &&
-          impact_wants(q->gc[1] > q->gc[0] && q->gc[1] < 1e30, "gc-high", q->gc[1], "must be over --gc-low", m, n) &&
-          impact_wants(q->gdot[0] > 0, "gdot-low", q->gdot[0], "must be > 0 J/m2/us", m, n) &&
-          impact_wants(q->gdot[1] > q->gdot[0] && q->gdot[1] < 1e30, "gdot-high", q->gdot[1], "must be over --gdot-low", m, n) &&
-          impact_wants(q->columns >= 5, "columns", (double)q->columns, "must be 5 or more", m, n) &&
-          impact_wants(q->rows >= 5, "rows", (double)q->rows, "must be 5 or more", m, n) &&
-          impact_wants(q->columns < CALIBRATION_NODES && calibration_nodes(q) <= CALIBRATION_NODES, "columns",
+    if (!(case_knows("thesis|large", "substrate", q->substrate, m, n) &&
+          case_knows("log|linear", "scale", q->scale, m, n) && case_knows("thesis|stays", "rule", q->rule, m, n) &&
+          case_wants(q->gc[0] > 0, "gc-low", q->gc[0], "must be > 0 J/m2", m, n) &&
+          case_wants(q->gc[1] > q->gc[0] && q->gc[1] < 1e30, "gc-high", q->gc[1], "must be over --gc-low", m, n) &&
+          case_wants(q->gdot[0] > 0, "gdot-low", q->gdot[0], "must be > 0 J/m2/us", m, n) &&
+          case_wants(q->gdot[1] > q->gdot[0] && q->gdot[1] < 1e30, "gdot-high", q->gdot[1], "must be over --gdot-low", m, n) &&
+          case_wants(q->columns >= 5, "columns", (double)q->columns, "must be 5 or more", m, n) &&
+          case_wants(q->rows >= 5, "rows", (double)q->rows, "must be 5 or more", m, n) &&
+          case_wants(q->columns < CALIBRATION_NODES && calibration_nodes(q) <= CALIBRATION_NODES, "columns",
                        (double)q->columns, "makes more than 4000 pairs", m, n) &&
-          impact_wants(q->stays > 0, "stays", q->stays, "must be > 0 m/s", m, n)))
+          case_wants(q->stays > 0, "stays", q->stays, "must be > 0 m/s", m, n)))
         return 0;
     for (k = 0; k < 2; k++)
-        if (!impact_wants(q->pbcp[k] >= 0, k ? "pbcp-2" : "pbcp-1", q->pbcp[k], "must be >= 0 %", m, n) ||
-            !impact_wants(q->restitution[k] >= 0, k ? "restitution-2" : "restitution-1", q->restitution[k],
+        if (!case_wants(q->pbcp[k] >= 0, k ? "pbcp-2" : "pbcp-1", q->pbcp[k], "must be >= 0 %", m, n) ||
+            !case_wants(q->restitution[k] >= 0, k ? "restitution-2" : "restitution-1", q->restitution[k],
                           "must be >= 0", m, n) ||
-            !impact_wants(q->velocity[k] > 0, k ? "velocity-2" : "velocity-1", q->velocity[k], "must be > 0 m/s", m, n))
+            !case_wants(q->velocity[k] > 0, k ? "velocity-2" : "velocity-1", q->velocity[k], "must be > 0 m/s", m, n))
             return 0;
     return impact_check(&a, m, n) && impact_check(&b, m, n);
 }

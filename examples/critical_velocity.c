@@ -149,18 +149,18 @@ static void print_answers(const impact_case *c, const request *q, const critical
 /* Refuses what makes no search. */
 static int check(const request *q, const impact_case *c, char *m, size_t n)
 {
-    return impact_check(c, m, n) && impact_knows("thesis|stays", "rule", q->rule.name, m, n) &&
-           impact_knows("thesis|large", "substrate", q->substrate, m, n) &&
-           impact_wants(q->offsets >= 1 && q->offsets <= OFFSETS, "offsets", (double)q->offsets, "must be 1 .. 32", m, n) &&
-           impact_wants(q->rule.pbcp >= 0, "pbcp", q->rule.pbcp, "must be >= 0 %", m, n) &&
-           impact_wants(q->rule.v_rest >= 0, "v-rest", q->rule.v_rest, "must be >= 0 m/s", m, n) &&
-           impact_wants(q->rule.stays > 0, "stays", q->rule.stays, "must be > 0 m/s", m, n) &&
-           impact_wants(q->range.low > 0, "low", q->range.low, "must be > 0 m/s", m, n) &&
-           impact_wants(q->range.high >= q->range.low && q->range.high < 1e5, "high", q->range.high,
+    return impact_check(c, m, n) && case_knows("thesis|stays", "rule", q->rule.name, m, n) &&
+           case_knows("thesis|large", "substrate", q->substrate, m, n) &&
+           case_wants(q->offsets >= 1 && q->offsets <= OFFSETS, "offsets", (double)q->offsets, "must be 1 .. 32", m, n) &&
+           case_wants(q->rule.pbcp >= 0, "pbcp", q->rule.pbcp, "must be >= 0 %", m, n) &&
+           case_wants(q->rule.v_rest >= 0, "v-rest", q->rule.v_rest, "must be >= 0 m/s", m, n) &&
+           case_wants(q->rule.stays > 0, "stays", q->rule.stays, "must be > 0 m/s", m, n) &&
+           case_wants(q->range.low > 0, "low", q->range.low, "must be > 0 m/s", m, n) &&
+           case_wants(q->range.high >= q->range.low && q->range.high < 1e5, "high", q->range.high,
                         "must not be under --low", m, n) &&
-           impact_wants(q->range.step > 0, "step", q->range.step, "must be > 0 m/s", m, n) &&
-           impact_wants(q->range.scan >= q->range.step, "scan", q->range.scan, "must not be under --step", m, n) &&
-           impact_wants(critical_cost(&q->range) * q->offsets <= CRITICAL_RUNS, "scan", q->range.scan,
+           case_wants(q->range.step > 0, "step", q->range.step, "must be > 0 m/s", m, n) &&
+           case_wants(q->range.scan >= q->range.step, "scan", q->range.scan, "must not be under --step", m, n) &&
+           case_wants(critical_cost(&q->range) * q->offsets <= CRITICAL_RUNS, "scan", q->range.scan,
                         "makes more than 2000 runs", m, n);
 }
 

@@ -8,7 +8,7 @@
    The loop in main() is the method, one call per phase. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "impact_case.h"
-#include "options.h"
+#include "program.h"
 
 #include <time.h>
 
@@ -17,27 +17,6 @@ typedef struct output {
     long frames;
     int quiet;
 } output;
-
-static int complain(const char *message)
-{
-    fprintf(stderr, "error: %s\n", message);
-    return 0;
-}
-
-static int report(const mpm_fault *fault, const char *what)
-{
-    char text[256], line[400];
-    mpm_io_fault_text(text, sizeof text, fault);
-    snprintf(line, sizeof line, "%s: %s", what, text);
-    return complain(line);
-}
-
-/* folder/name */
-static const char *file_in(const char *folder, const char *name, char *path, size_t n)
-{
-    snprintf(path, n, "%s/%s", folder, name);
-    return path;
-}
 
 /* "al", or "al on cu". */
 static const char *metals(const impact *s, char *text, size_t n)
@@ -148,10 +127,9 @@ static int write_summary(const impact *s, const impact_case *c, const output *o,
     const impact_result r = impact_measure(s, c);
     const mpm_material *a = &s->material[IMPACT_PARTICLE], *b = &s->material[IMPACT_SUBSTRATE];
     const mpm_world *w = &s->world;
-    char path[1024], text[256];
+    char path[1024];
     mpm_fault fault;
     mpm_io_json j;
-    int i;
     mpm_io_json_begin(&j, file_in(o->folder, "summary.json", path, sizeof path), &fault);
     mpm_io_json_number(&j, "pbcp_percent", r.bond.pbcp);
     mpm_io_json_number(&j, "pbcp_particle_percent", r.particle_bond.pbcp);
@@ -196,14 +174,7 @@ static int write_summary(const impact *s, const impact_case *c, const output *o,
     mpm_io_json_integer(&j, "shear_floor_hits", (long long)(a->shear_floor_hits + b->shear_floor_hits));
     mpm_io_json_integer(&j, "iteration_hits", (long long)(a->iteration_hits + b->iteration_hits));
     mpm_io_json_integer(&j, "sorts", w->sorts);
-    mpm_io_json_open(&j, "options");
-    for (i = 0; i < n; i++) {
-        option_text(&options[i], text, sizeof text);
-        if (options[i].type == OPTION_REAL) mpm_io_json_number(&j, options[i].name, *(double *)options[i].value);
-        else if (options[i].type == OPTION_LONG) mpm_io_json_integer(&j, options[i].name, *(long *)options[i].value);
-        else mpm_io_json_string(&j, options[i].name, text);
-    }
-    mpm_io_json_close(&j);
+    options_json(&j, options, n);
     if (mpm_io_json_end(&j, &fault) < 0) return report(&fault, path);
     return 1;
 }

@@ -4,13 +4,10 @@
 #ifndef IMPACT_CASE_H
 #define IMPACT_CASE_H
 
+#include "case.h"
 #include "mpm.h"
 #include "mpm_ptw.h"
 #include "mpm_bond.h"
-#include "mpm_io.h"
-
-#include <stdio.h>
-#include <string.h>
 
 /* What to run. Every member is an option of examples/impact; the defaults are its main job. */
 typedef struct impact_case {
@@ -79,48 +76,16 @@ typedef struct impact {
     mpm_totals start;
 } impact;
 
-/* Looks a word up in a list "one|two|three". Returns its place, or -1. */
-static inline int impact_word(const char *list, const char *word)
-{
-    size_t n = strlen(word);
-    int place = 0;
-    while (*list) {
-        const char *end = strchr(list, '|');
-        size_t m = end ? (size_t)(end - list) : strlen(list);
-        if (m == n && !strncmp(list, word, n)) return place;
-        place++;
-        list += m + (end ? 1 : 0);
-    }
-    return -1;
-}
-
-/* One check of the description: on failure writes a message naming option and value. */
-static inline int impact_wants(int ok, const char *option, double value, const char *rule, char *message, size_t n)
-{
-    char text[32];
-    if (ok) return 1;
-    mpm_io_number_text(text, sizeof text, value);
-    snprintf(message, n, "--%s %s: %s", option, text, rule);
-    return 0;
-}
-
-static inline int impact_knows(const char *list, const char *option, const char *word, char *message, size_t n)
-{
-    if (impact_word(list, word) >= 0) return 1;
-    snprintf(message, n, "--%s %s: not one of %s", option, word, list);
-    return 0;
-}
-
 /* Options that contradict each other. */
 static inline int impact_agrees(const impact_case *c, char *m, size_t n)
 {
     const int round_ball = !strcmp(c->shape, "sphere");
     if (round_ball && (c->aspect < 1 || c->aspect > 1))
-        return impact_wants(0, "aspect", c->aspect, "a sphere has none: add --shape ellipsoid", m, n);
+        return case_wants(0, "aspect", c->aspect, "a sphere has none: add --shape ellipsoid", m, n);
     if (!(fabs(c->angle) > 0)) return 1;
     if (!strcmp(c->geometry, "axisymmetric"))
-        return impact_wants(0, "angle", c->angle, "an oblique impact is not axisymmetric", m, n);
-    return impact_wants(strcmp(c->symmetry, "quarter") != 0, "angle", c->angle,
+        return case_wants(0, "angle", c->angle, "an oblique impact is not axisymmetric", m, n);
+    return case_wants(strcmp(c->symmetry, "quarter") != 0, "angle", c->angle,
                         "an oblique impact has one mirror plane: add --symmetry half (or full)", m, n);
 }
 
@@ -128,44 +93,44 @@ static inline int impact_agrees(const impact_case *c, char *m, size_t n)
 static inline int impact_check(const impact_case *c, char *m, size_t n)
 {
     const double big = 1e6;
-    return impact_wants(c->diameter > 0 && c->diameter < big, "diameter", c->diameter, "must be > 0 um", m, n) &&
-           impact_wants(c->velocity > -1e5 && c->velocity < 1e5, "velocity", c->velocity, "must be finite", m, n) &&
-           impact_wants(c->angle > -90 && c->angle < 90, "angle", c->angle, "must be in (-90, 90) degrees", m, n) &&
-           impact_wants(c->aspect >= 0.1 && c->aspect <= 10, "aspect", c->aspect, "must be 0.1 .. 10", m, n) &&
-           impact_wants(c->temperature > 0 && c->temperature < 1e5, "temperature", c->temperature,
+    return case_wants(c->diameter > 0 && c->diameter < big, "diameter", c->diameter, "must be > 0 um", m, n) &&
+           case_wants(c->velocity > -1e5 && c->velocity < 1e5, "velocity", c->velocity, "must be finite", m, n) &&
+           case_wants(c->angle > -90 && c->angle < 90, "angle", c->angle, "must be in (-90, 90) degrees", m, n) &&
+           case_wants(c->aspect >= 0.1 && c->aspect <= 10, "aspect", c->aspect, "must be 0.1 .. 10", m, n) &&
+           case_wants(c->temperature > 0 && c->temperature < 1e5, "temperature", c->temperature,
                         "must be > 0 K", m, n) &&
-           impact_wants(c->substrate_temperature >= 0 && c->substrate_temperature < 1e5, "substrate-temperature",
+           case_wants(c->substrate_temperature >= 0 && c->substrate_temperature < 1e5, "substrate-temperature",
                         c->substrate_temperature, "must be > 0 K, or 0 for that of the particle", m, n) &&
-           impact_wants(c->cell > 0 && c->cell < big, "cell", c->cell, "must be > 0 um", m, n) &&
-           impact_wants(c->spacing > 0, "spacing", c->spacing, "must be > 0 um", m, n) &&
-           impact_wants(c->spacing <= c->cell, "spacing", c->spacing, "must not be larger than the cell", m, n) &&
-           impact_wants(c->spacing * 1000 > c->diameter, "spacing", c->spacing, "too fine for the diameter", m, n) &&
-           impact_wants(c->spacing <= c->diameter / 2, "spacing", c->spacing, "too coarse for the diameter", m, n) &&
-           impact_wants(c->substrate_diameter > 0 && c->substrate_diameter < big, "substrate-diameter",
+           case_wants(c->cell > 0 && c->cell < big, "cell", c->cell, "must be > 0 um", m, n) &&
+           case_wants(c->spacing > 0, "spacing", c->spacing, "must be > 0 um", m, n) &&
+           case_wants(c->spacing <= c->cell, "spacing", c->spacing, "must not be larger than the cell", m, n) &&
+           case_wants(c->spacing * 1000 > c->diameter, "spacing", c->spacing, "too fine for the diameter", m, n) &&
+           case_wants(c->spacing <= c->diameter / 2, "spacing", c->spacing, "too coarse for the diameter", m, n) &&
+           case_wants(c->substrate_diameter > 0 && c->substrate_diameter < big, "substrate-diameter",
                         c->substrate_diameter, "must be > 0 um", m, n) &&
-           impact_wants(c->substrate_height > 0 && c->substrate_height < big, "substrate-height",
+           case_wants(c->substrate_height > 0 && c->substrate_height < big, "substrate-height",
                         c->substrate_height, "must be > 0 um", m, n) &&
-           impact_wants(c->time > 0 && c->time < 1e9, "time", c->time, "must be > 0 ns", m, n) &&
-           impact_wants(c->dt_factor > 0 && c->dt_factor <= 1, "dt-factor", c->dt_factor, "must be in (0, 1]", m, n) &&
-           impact_wants(c->gc > 0 && c->gc < 1e30, "gc", c->gc, "must be > 0 J/m2", m, n) &&
-           impact_wants(c->gdot > 0 && c->gdot < 1e30, "gdot", c->gdot, "must be > 0 J/m2/us", m, n) &&
-           impact_wants(c->floor > 0 && c->floor < 1e30, "floor", c->floor, "must be > 0", m, n) &&
-           impact_wants(c->eps_c > 0 && c->eps_c < 1e30, "eps-c", c->eps_c, "must be > 0", m, n) &&
-           impact_wants(c->epsdot_c > 0 && c->epsdot_c < 1e30, "epsdot-c", c->epsdot_c, "must be > 0 per us", m, n) &&
-           impact_wants(c->shell > 0 && c->shell < big, "shell", c->shell, "must be > 0 spacings", m, n) &&
-           impact_wants(c->friction >= 0 && c->friction < 1e30, "friction", c->friction, "must be >= 0", m, n) &&
-           impact_wants(c->gap > -big && c->gap < big, "gap", c->gap, "must be finite", m, n) &&
-           impact_wants(c->margin > -big && c->margin < big, "margin", c->margin, "must be finite", m, n) &&
-           impact_wants(c->offset > -big && c->offset < big, "grid-offset", c->offset, "must be finite", m, n) &&
-           impact_knows("sphere|ellipsoid", "shape", c->shape, m, n) &&
-           impact_knows("preset|elastic|linear|jc|scg|ptw", "model", c->model, m, n) &&
-           impact_knows("none|energy|strain", "bond", c->bond, m, n) &&
-           impact_knows("mean|weighted|literal", "bond-average", c->bond_average, m, n) &&
-           impact_knows("full|half|quarter", "symmetry", c->symmetry, m, n) &&
-           impact_knows("3d|axisymmetric", "geometry", c->geometry, m, n) &&
-           impact_knows("linear|gimp", "functions", c->functions, m, n) &&
-           impact_knows("ranked|mvg|average|vertical|logistic", "normal", c->normal, m, n) &&
-           impact_knows("consistent|staged", "plasticity", c->plasticity, m, n) && impact_agrees(c, m, n);
+           case_wants(c->time > 0 && c->time < 1e9, "time", c->time, "must be > 0 ns", m, n) &&
+           case_wants(c->dt_factor > 0 && c->dt_factor <= 1, "dt-factor", c->dt_factor, "must be in (0, 1]", m, n) &&
+           case_wants(c->gc > 0 && c->gc < 1e30, "gc", c->gc, "must be > 0 J/m2", m, n) &&
+           case_wants(c->gdot > 0 && c->gdot < 1e30, "gdot", c->gdot, "must be > 0 J/m2/us", m, n) &&
+           case_wants(c->floor > 0 && c->floor < 1e30, "floor", c->floor, "must be > 0", m, n) &&
+           case_wants(c->eps_c > 0 && c->eps_c < 1e30, "eps-c", c->eps_c, "must be > 0", m, n) &&
+           case_wants(c->epsdot_c > 0 && c->epsdot_c < 1e30, "epsdot-c", c->epsdot_c, "must be > 0 per us", m, n) &&
+           case_wants(c->shell > 0 && c->shell < big, "shell", c->shell, "must be > 0 spacings", m, n) &&
+           case_wants(c->friction >= 0 && c->friction < 1e30, "friction", c->friction, "must be >= 0", m, n) &&
+           case_wants(c->gap > -big && c->gap < big, "gap", c->gap, "must be finite", m, n) &&
+           case_wants(c->margin > -big && c->margin < big, "margin", c->margin, "must be finite", m, n) &&
+           case_wants(c->offset > -big && c->offset < big, "grid-offset", c->offset, "must be finite", m, n) &&
+           case_knows("sphere|ellipsoid", "shape", c->shape, m, n) &&
+           case_knows("preset|elastic|linear|jc|scg|ptw", "model", c->model, m, n) &&
+           case_knows("none|energy|strain", "bond", c->bond, m, n) &&
+           case_knows("mean|weighted|literal", "bond-average", c->bond_average, m, n) &&
+           case_knows("full|half|quarter", "symmetry", c->symmetry, m, n) &&
+           case_knows("3d|axisymmetric", "geometry", c->geometry, m, n) &&
+           case_knows("linear|gimp", "functions", c->functions, m, n) &&
+           case_knows("ranked|mvg|average|vertical|logistic", "normal", c->normal, m, n) &&
+           case_knows("consistent|staged", "plasticity", c->plasticity, m, n) && impact_agrees(c, m, n);
 }
 
 /* Half axes of the particle across and along z, um: the volume is that of the sphere. */
@@ -183,7 +148,7 @@ static inline mpm_desc impact_grid(const impact_case *c)
     const int32_t below = (int32_t)ceil((c->substrate_height + shift) / c->cell - 1e-9) + (margin > 0 ? 3 : 0);
     const int32_t above = (int32_t)ceil((2 * impact_half_height(c) + c->gap + margin - shift) / c->cell - 1e-9);
     const int rings = !strcmp(c->geometry, "axisymmetric");
-    const int mirrors = impact_word("full|half|quarter", c->symmetry); /* y = 0, then x = 0 too */
+    const int mirrors = case_word("full|half|quarter", c->symmetry); /* y = 0, then x = 0 too */
     mpm_desc d = mpm_desc_default();
     int a;
     d.geometry = rings ? MPM_AXISYMMETRIC : MPM_3D;
@@ -199,7 +164,7 @@ static inline mpm_desc impact_grid(const impact_case *c)
     d.origin[2] = (mpm_real)(shift - below * c->cell);
     d.friction = (mpm_real)c->friction;
     d.separation = c->separation;
-    d.normal = (mpm_normal_rule)impact_word("ranked|mvg|average|vertical|logistic", c->normal);
+    d.normal = (mpm_normal_rule)case_word("ranked|mvg|average|vertical|logistic", c->normal);
     d.bodies = 2;
     return d;
 }
@@ -231,8 +196,8 @@ static inline mpm_bond impact_bond(const impact_case *c)
 {
     const mpm_units units = mpm_units_um_us_ng();
     mpm_bond b = mpm_bond_default(&units);
-    b.rule = (mpm_bond_rule)impact_word("none|energy|strain", c->bond);
-    b.average = (mpm_bond_average)impact_word("mean|weighted|literal", c->bond_average);
+    b.rule = (mpm_bond_rule)case_word("none|energy|strain", c->bond);
+    b.average = (mpm_bond_average)case_word("mean|weighted|literal", c->bond_average);
     b.critical = (mpm_real)(b.rule == MPM_BOND_STRAIN ? c->eps_c : c->gc);
     b.critical_rate = (mpm_real)(b.rule == MPM_BOND_STRAIN ? c->epsdot_c : c->gdot);
     b.floor = (mpm_real)c->floor;

@@ -63,11 +63,11 @@ int main(int argc, char **argv)
                            "--time 0: the fall from the full height and 40 ns. Writes particles.csv, pairs.csv,\n"
                            "summary.json and frames.", o, n);
     if (parsed) return parsed < 0;
-    if (!impact_wants(q.count >= 1 && q.count <= PARTICLES, "count", (double)q.count, "must be 1 .. 500", message, sizeof message) ||
-        !impact_wants(q.frames >= 0 && q.frames < 10000, "frames", (double)q.frames, "must be 0 .. 9999", message, sizeof message) ||
-        !impact_wants(spread > 0 && spread < 1e4, "spread", spread, "must be > 0 um", message, sizeof message) ||
-        !impact_wants(height >= 0 && height < 1e4, "height", height, "must be >= 0 um", message, sizeof message) ||
-        !impact_wants(q.base.velocity > 0, "velocity", q.base.velocity, "must be > 0 m/s", message, sizeof message))
+    if (!case_wants(q.count >= 1 && q.count <= PARTICLES, "count", (double)q.count, "must be 1 .. 500", message, sizeof message) ||
+        !case_wants(q.frames >= 0 && q.frames < 10000, "frames", (double)q.frames, "must be 0 .. 9999", message, sizeof message) ||
+        !case_wants(spread > 0 && spread < 1e4, "spread", spread, "must be > 0 um", message, sizeof message) ||
+        !case_wants(height >= 0 && height < 1e4, "height", height, "must be >= 0 um", message, sizeof message) ||
+        !case_wants(q.base.velocity > 0, "velocity", q.base.velocity, "must be > 0 m/s", message, sizeof message))
         return fprintf(stderr, "error: %s\n", message), 1;
     if (!(height > 0)) height = (double)q.count * q.base.diameter * q.base.diameter * q.base.diameter / 6 / 0.2 / (spread * spread / 4);
     if (!(q.base.substrate_diameter > 0)) q.base.substrate_diameter = spread + q.base.diameter;

@@ -43,7 +43,7 @@ static inline int particles_begin(impact *s, const particles_case *q, char *mess
     int a;
     memset(s, 0, sizeof *s);
     if (!impact_check(&q->base, message, n)) return 0;
-    if (!impact_wants(!strcmp(q->base.geometry, "3d"), "count", (double)q->count, "particles need geometry 3d", message, n))
+    if (!case_wants(!strcmp(q->base.geometry, "3d"), "count", (double)q->count, "particles need geometry 3d", message, n))
         return 0;
     for (k = 0; k < q->count; k++) {
         const double *x = q->center[k], reach = fmax(fabs(x[0]), fabs(x[1])) + q->base.diameter / 2;

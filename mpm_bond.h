@@ -230,7 +230,7 @@ typedef struct mpm_pull {
     double time, separation;   /* since the start: time, way of the upper grip */
     double force, grip_force;  /* tension between the bodies, and in the upper grip: means of the last sample */
     double work;               /* of the upper grip, grip_force over the way */
-    double peak_force, peak_stress, peak_separation; /* largest sample of force: it, over the area, where */
+    double peak_force, peak_stress, peak_separation; /* largest tension of a sample: it, over the area, where */
     long samples;
     double sum[2], since;      /* impulses and time of the sample under way */
 } mpm_pull;
@@ -746,7 +746,8 @@ MPM_API int mpm_pull_hold(mpm_pull *p, mpm_world *w, mpm_real dt)
     p->force = p->sum[0] / p->since;
     p->grip_force = p->sum[1] / p->since;
     p->sum[0] = p->sum[1] = p->since = 0;
-    if (!p->samples++ || p->force > p->peak_force) {
+    p->samples++;
+    if (p->force > p->peak_force) {
         p->peak_force = p->force;
         p->peak_stress = p->force / p->desc.area;
         p->peak_separation = p->separation;

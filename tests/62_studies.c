@@ -1,0 +1,179 @@
+/* 62_studies - the study programs (made by make before the tests) on coarse grids: one number of each is
+   checked, an interrupted study goes on without repeating a run, bad input is refused.
+   SPDX-License-Identifier: MIT */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+
+#define FOLDER "build/tests/studies"
+
+/* A grid so coarse that a run takes a tenth of a second. */
+#define COARSE "--functions gimp --cell 2 --spacing 1 --substrate-diameter 24 --substrate-height 6 --margin 0.5 "
+
+static char output[20000];
+
+/* What a file holds, in `text`. Returns its length; 0 if there is none. */
+static size_t contents(const char *path, char *text, size_t room)
+{
+    FILE *f = fopen(path, "rb");
+    size_t n = 0;
+    if (f) {
+        n = fread(text, 1, room - 1, f);
+        fclose(f);
+    }
+    text[n] = 0;
+    return n;
+}
+
+/* Exit status of build/<command>: 0, or not. Its output is in `output`. */
+static int run(const char *command)
+{
+    char line[800];
+    int status;
+    snprintf(line, sizeof line, "build/%s >" FOLDER ".out 2>&1", command);
+    status = system(line) != 0;
+    contents(FOLDER ".out", output, sizeof output);
+    return status;
+}
+
+/* The number behind "key": in a JSON file; -1e300 if there is none. */
+static double number_in(const char *path, const char *key)
+{
+    static char text[20000];
+    char quoted[64];
+    const char *at;
+    contents(path, text, sizeof text);
+    snprintf(quoted, sizeof quoted, "\"%s\":", key);
+    at = strstr(text, quoted);
+    return at ? strtod(at + strlen(quoted), NULL) : -1e300;
+}
+
+static int lines(const char *text)
+{
+    int n = 0;
+    for (; *text; text++) n += *text == '\n';
+    return n;
+}
+
+static void refused(const char *command, const char *value)
+{
+    CHECK_EQUAL(command, run(command), 1);
+    CHECK_TRUE("... with a message naming it", strstr(output, value) != NULL);
+}
+
+static void critical(void)
+{
+    const char *search = "critical_velocity " COARSE "--time 40 --gc 1000 --gdot 2e5 --rule stays --low 500 --high 900 "
+                         "--scan 100 --step 50 --quiet --out " FOLDER "/critical ";
+    const char *summary = FOLDER "/critical/summary.json";
+    char command[600];
+    double first;
+    system("rm -rf " FOLDER);
+    snprintf(command, sizeof command, "%s --limit 2", search);
+    CHECK_EQUAL("a search stopped after two runs says so", run(command), 1);
+    CHECK_TRUE("... in words", strstr(output, "run again") != NULL);
+    CHECK_TRUE("... and writes no answer", number_in(summary, "critical_velocity_m_s") < -1e299);
+    CHECK_EQUAL("it goes on", run(search), 0);
+    CHECK_EQUAL("... without repeating the two", number_in(summary, "runs") - number_in(summary, "runs_made_now"), 2);
+    first = number_in(summary, "critical_velocity_m_s");
+    CHECK_TRUE("the bracket is as narrow as asked", first - number_in(summary, "not_bonded_below_m_s") <= 50);
+    CHECK_TRUE("the weak metal bonds between 700 and 900 m/s", first > 700 && first <= 900);
+    CHECK_EQUAL("once more", run(search), 0);
+    CHECK_EQUAL("... nothing is run again", number_in(summary, "runs_made_now"), 0);
+    CHECK_EQUAL("... and the answer is the same", number_in(summary, "critical_velocity_m_s"), first);
+    snprintf(command, sizeof command, "%s --gdot 1e5", search);
+    CHECK_EQUAL("a weaker rate", run(command), 0);
+    CHECK_TRUE("... is another case", number_in(summary, "runs_made_now") > 4);
+    CHECK_TRUE("... that bonds at a lower velocity", number_in(summary, "critical_velocity_m_s") < first);
+    snprintf(command, sizeof command, "%s --offsets 2", search);
+    CHECK_EQUAL("two grid offsets", run(command), 0);
+    CHECK_TRUE("... give extremes", number_in(summary, "lowest_m_s") <= first);
+    snprintf(command, sizeof command, "%s --bond none", search);
+    CHECK_EQUAL("without bonding", run(command), 0);
+    CHECK_EQUAL("... no velocity bonds", number_in(summary, "offsets_without_bond"), 1);
+    refused("critical_velocity --rule often", "often");
+    refused("critical_velocity --offsets 0", "offsets 0");
+    refused("critical_velocity --low -5", "-5");
+    refused("critical_velocity --high 100", "high 100");
+    refused("critical_velocity --step 0", "step 0");
+    refused("critical_velocity --scan nan", "nan");
+    refused("critical_velocity --material mud", "mud");
+    refused("critical_velocity --velocity 810", "--velocity");
+    refused("critical_velocity " COARSE "--time 1 --low 800 --high 800 --out /proc/none", "/proc/none");
+}
+
+static void calibration(void)
+{
+    const char *sweep = "calibrate " COARSE "--time 20 --columns 6 --rows 5 --diameter-2 16 --gc-low 200 --gc-high 4000 "
+                        "--pbcp-1 10 --pbcp-2 10 --restitution-1 1 --restitution-2 1 --quiet --out " FOLDER "/calibrate ";
+    const char *summary = FOLDER "/calibrate/summary.json";
+    char command[700];
+    int tasks;
+    snprintf(command, sizeof command, "%s --list", sweep);
+    CHECK_EQUAL("a sweep lists its first tasks", run(command), 0);
+    tasks = lines(output);
+    CHECK_EQUAL("... 25 of each size", tasks, 50);
+    snprintf(command, sizeof command, "%s --collect", sweep);
+    CHECK_EQUAL("nothing to collect yet", run(command), 1);
+    snprintf(command, sizeof command, "%s --task 0", sweep);
+    CHECK_EQUAL("one task alone", run(command), 0);
+    snprintf(command, sizeof command, "%s --list", sweep);
+    run(command);
+    CHECK_EQUAL("... leaves the list", lines(output), tasks - 1);
+    CHECK_TRUE("... by its number", strncmp(output, "0  ", 3) != 0);
+    snprintf(command, sizeof command, "%s --limit 3", sweep);
+    CHECK_EQUAL("stopped after three", run(command), 1);
+    CHECK_EQUAL("it goes on", run(sweep), 0);
+    snprintf(command, sizeof command, "%s --list", sweep);
+    run(command);
+    CHECK_EQUAL("... to the end", lines(output), 0);
+    CHECK_TRUE("some bonded", number_in(summary, "bonded") > 0);
+    CHECK_TRUE("... and some did not", number_in(summary, "bonded") < number_in(summary, "tests"));
+    CHECK_TRUE("the boundary parts them, but for a few", number_in(summary, "tests_on_the_wrong_side") <= 3);
+    CHECK_TRUE("a picture", contents(FOLDER "/calibrate/classes.png", output, sizeof output) > 1000);
+    refused("calibrate --columns 4", "columns 4");
+    refused("calibrate --rows 4000", "columns 25");
+    refused("calibrate --gc-low 0", "gc-low 0");
+    refused("calibrate --gdot-high 10", "gdot-high 10");
+    refused("calibrate --scale cubic", "cubic");
+    refused("calibrate --task 9999", "9999");
+    refused("calibrate --velocity-2 0", "velocity-2 0");
+}
+
+static void particles(void)
+{
+    const char *grid = "--cell 2 --spacing 1 --substrate-diameter 24 --substrate-height 6 --margin 0.5 --quiet --frames 1 --out " FOLDER;
+    char command[600], text[4000];
+    snprintf(command, sizeof command, "two_particles %s/two --time 16 --height 22 --offset 3", grid);
+    CHECK_EQUAL("a second particle", run(command), 0);
+    CHECK_NEAR("mass", number_in(FOLDER "/two/summary.json", "mass_error"), 0, 1e-14);
+    CHECK_TRUE("both are in the report", contents(FOLDER "/two/particles.csv", text, sizeof text) && lines(text) == 4);
+    CHECK_TRUE("the first touched the substrate, the second the first",
+               contents(FOLDER "/two/pairs.csv", text, sizeof text) && strstr(text, "\n0,2,") && strstr(text, "\n0,1,"));
+    CHECK_TRUE("a picture", contents(FOLDER "/two/frame_0000.png", text, sizeof text) > 1000);
+    snprintf(command, sizeof command, "many_particles %s/many --count 3 --spread 20 --height 30 --seed 7 --time 2", grid);
+    CHECK_EQUAL("three particles", run(command), 0);
+    CHECK_EQUAL("... counted", number_in(FOLDER "/many/summary.json", "particles"), 3);
+    CHECK_TRUE("... of which two arrive later", number_in(FOLDER "/many/summary.json", "arriving") >= 2);
+    contents(FOLDER "/many/particles.csv", text, sizeof text);
+    CHECK_EQUAL("the same seed", run(command), 0);
+    contents(FOLDER "/many/particles.csv", output, sizeof output);
+    CHECK_TRUE("... gives the same report", !strcmp(text, output));
+    refused("two_particles --height 10", "overlap");
+    refused("two_particles --geometry axisymmetric", "3d");
+    refused("two_particles --offset inf", "inf");
+    refused("many_particles --count 0", "count 0");
+    refused("many_particles --count 501", "501");
+    refused("many_particles --count 400 --spread 20 --height 30", "no room");
+    refused("many_particles --velocity 0", "velocity 0");
+}
+
+int main(void)
+{
+    critical();
+    calibration();
+    particles();
+    return check_end();
+}

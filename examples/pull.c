@@ -15,7 +15,7 @@
    The loop in draw() is the method with a grip in it. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "impact_case.h"
-#include "options.h"
+#include "program.h"
 
 /* What to do after the impact. */
 typedef struct pull_case {
@@ -31,21 +31,6 @@ typedef struct curve {
     size_t count, room;
 } curve;
 
-static int complain(const char *what, const mpm_fault *fault)
-{
-    char text[256];
-    if (fault) mpm_io_fault_text(text, sizeof text, fault);
-    fprintf(stderr, "error: %s%s%s\n", what, fault ? ": " : "", fault ? text : "");
-    return 0;
-}
-
-/* folder/name */
-static const char *file_in(const char *folder, const char *name, char *path, size_t n)
-{
-    snprintf(path, n, "%s/%s", folder, name);
-    return path;
-}
-
 /* Copies of the model in the whole: 4 quarters, 2 halves. */
 static double copies(const mpm_world *w)
 {
@@ -55,13 +40,13 @@ static double copies(const mpm_world *w)
 
 static int check(const pull_case *c, char *m, size_t n)
 {
-    return impact_wants(c->velocity > 0 && c->velocity < 1e4, "pull-velocity", c->velocity, "must be > 0 m/s", m, n) &&
-           impact_wants(c->ramp >= 0 && c->ramp < 1e9, "ramp", c->ramp, "must be >= 0 ns", m, n) &&
-           impact_wants(c->sample > 0 && c->sample < 1e9, "sample", c->sample, "must be > 0 ns", m, n) &&
-           impact_wants(c->distance > 0 && c->distance < 1e6, "distance", c->distance, "must be > 0 um", m, n) &&
-           impact_wants(c->distance / c->velocity * 1e3 / c->sample < 1e6, "sample", c->sample, "too many of them", m,
+    return case_wants(c->velocity > 0 && c->velocity < 1e4, "pull-velocity", c->velocity, "must be > 0 m/s", m, n) &&
+           case_wants(c->ramp >= 0 && c->ramp < 1e9, "ramp", c->ramp, "must be >= 0 ns", m, n) &&
+           case_wants(c->sample > 0 && c->sample < 1e9, "sample", c->sample, "must be > 0 ns", m, n) &&
+           case_wants(c->distance > 0 && c->distance < 1e6, "distance", c->distance, "must be > 0 um", m, n) &&
+           case_wants(c->distance / c->velocity * 1e3 / c->sample < 1e6, "sample", c->sample, "too many of them", m,
                         n) &&
-           impact_wants(c->grip > 0 && c->grip < 1e6, "grip", c->grip, "must be > 0 um", m, n);
+           case_wants(c->grip > 0 && c->grip < 1e6, "grip", c->grip, "must be > 0 um", m, n);
 }
 
 /* The pull that follows the impact s, whose bodies meet at `met`. */
@@ -91,10 +76,10 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
     do {
         mpm_status status = mpm_locate(w);
         if (status == MPM_ERR_FULL) {
-            if (mpm_grow(w, NULL, 0) < 0) return complain("growing the grid", &w->fault);
+            if (mpm_grow(w, NULL, 0) < 0) return report(&w->fault, "growing the grid");
             continue;
         }
-        if (status < 0) return complain("locate", &w->fault);
+        if (status < 0) return report(&w->fault, "locate");
         mpm_p2g(w);
         mpm_forces(w, dt);
         mpm_grid_update(w, dt);
@@ -118,7 +103,7 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
             mpm_io_csv_integer(table, met.held);
             if (met.nodes == 0) return 1;
         }
-        if (mpm_stress(w, dt) < 0) return complain("stress", &w->fault);
+        if (mpm_stress(w, dt) < 0) return report(&w->fault, "stress");
         mpm_move(w, dt);
     } while (p->separation < o->distance && c->count < c->room);
     return 1;
@@ -160,23 +145,22 @@ static int write_picture(const impact *s, const impact_case *c, const pull_case 
     plot.title = "nominal stress";
     plot.x_label = "way of the grip (um)";
     plot.y_label = "stress (MPa)";
-    if (mpm_io_canvas_init(&canvas, 1500, 700, NULL, 0) != MPM_OK) return complain("no memory for the picture", NULL);
+    if (mpm_io_canvas_init(&canvas, 1500, 700, NULL, 0) != MPM_OK) return complain("no memory for the picture");
     file_in(o->folder, "pull.png", path, sizeof path);
     ok = mpm_io_cut(&canvas, mpm_io_tile(&canvas, 2, 1, 0), &cut, &fault) >= 0 &&
          (k->count < 2 || mpm_io_plot(&canvas, mpm_io_tile(&canvas, 2, 1, 1), &plot, &fault) >= 0) &&
          mpm_io_png(path, &canvas, "mpm.h examples/pull", &fault) >= 0;
     mpm_io_canvas_free(&canvas);
-    return ok || complain(path, &fault);
+    return ok || report(&fault, path);
 }
 
 static int write_summary(const impact *s, const pull_case *o, const impact_result *r, const mpm_interface *met,
                          const mpm_pull *p, const option *options, int n)
 {
     const double whole = copies(&s->world);
-    char path[1024], text[256];
+    char path[1024];
     mpm_fault fault;
     mpm_io_json j;
-    int i;
     mpm_io_json_begin(&j, file_in(o->folder, "summary.json", path, sizeof path), &fault);
     mpm_io_json_number(&j, "strength_MPa", p->peak_stress);
     mpm_io_json_number(&j, "peak_force_uN", p->peak_force * whole);
@@ -196,14 +180,8 @@ static int write_summary(const impact *s, const pull_case *o, const impact_resul
     mpm_io_json_integer(&j, "nodes_met", met->nodes);
     mpm_io_json_integer(&j, "nodes_bonded", met->bonded);
     mpm_io_json_close(&j);
-    mpm_io_json_open(&j, "options");
-    for (i = 0; i < n; i++) {
-        option_text(&options[i], text, sizeof text);
-        if (options[i].type == OPTION_REAL) mpm_io_json_number(&j, options[i].name, *(double *)options[i].value);
-        else mpm_io_json_string(&j, options[i].name, text);
-    }
-    mpm_io_json_close(&j);
-    return mpm_io_json_end(&j, &fault) >= 0 || complain(path, &fault);
+    options_json(&j, options, n);
+    return mpm_io_json_end(&j, &fault) >= 0 || report(&fault, path);
 }
 
 /* Impact and pull. The world is that of s; c gets room for the samples. */
@@ -216,19 +194,19 @@ static int run(impact *s, const impact_case *ic, const pull_case *o, curve *c, c
     mpm_pull p;
     char path[1024];
     while (s->world.steps < s->steps)
-        if (impact_step(s) < 0) return complain("impact", &s->world.fault);
+        if (impact_step(s) < 0) return report(&s->world.fault, "impact");
     r = impact_measure(s, ic);
     met = mpm_bond_interface(&s->world, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
     memset(&p, 0, sizeof p);
     if (mpm_io_csv_begin(&table, file_in(o->folder, "pull.csv", path, sizeof path),
                          "time_ns,way_um,force_uN,grip_force_uN,stress_MPa,nodes_met,nodes_bonded,nodes_held",
                          "pull: forces of the whole particle", &fault) < 0)
-        return complain(path, &fault);
+        return report(&fault, path);
     if (met.area > 0) { /* else the particle has left: strength 0 */
-        if (describe(&p, s, ic, o, &met, &fault) != MPM_OK) return complain("--grip", &fault);
+        if (describe(&p, s, ic, o, &met, &fault) != MPM_OK) return report(&fault, "--grip");
         if (!draw(s, o, &p, &table, c)) return 0;
     }
-    if (mpm_io_csv_end(&table, &fault) < 0) return complain(path, &fault);
+    if (mpm_io_csv_end(&table, &fault) < 0) return report(&fault, path);
     if (!write_summary(s, o, &r, &met, &p, options, n) || !write_picture(s, ic, o, &p, c)) return 0;
     if (!o->quiet)
         printf("strength %.4g MPa: %.4g uN over %.4g um2 of contact (%.4g um2 at bonded nodes)\n"
@@ -282,15 +260,15 @@ int main(int argc, char **argv)
                            options, n);
     if (parsed) return parsed < 0 ? 1 : 0;
     if (!check(&o, message, sizeof message) || !impact_begin(&s, &c, message, sizeof message)) {
-        complain(message, NULL);
+        complain(message);
         return 1;
     }
     k.count = 0;
     k.room = (size_t)(o.distance / o.velocity * 1e3 / o.sample + o.ramp / o.sample) + 2;
     k.separation = (mpm_real *)malloc(2 * k.room * sizeof *k.separation);
     k.stress = k.separation + k.room;
-    ok = k.separation || complain("no memory", NULL);
-    ok = ok && (mpm_io_make_directory(o.folder, &fault) >= 0 || complain(o.folder, &fault));
+    ok = k.separation || complain("no memory");
+    ok = ok && (mpm_io_make_directory(o.folder, &fault) >= 0 || report(&fault, o.folder));
     ok = ok && run(&s, &c, &o, &k, options, n);
     free(k.separation);
     mpm_free(&s.world);

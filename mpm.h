@@ -1850,8 +1850,9 @@ MPM__KERNEL void mpm__forces_run(mpm_world *w, const mpm_run *r, int k, int ky, 
 /* Viscous dampers of one run: traction -a rho Vp v_n - b rho Vs v_t at the points of the damped
    faces, times the area they represent: of the true face, their share of its mass. The velocity is
    the grid's at the point, so that the damper takes energy and nothing else. */
-MPM__KERNEL void mpm__absorb_run(mpm_world *w, const mpm_run *r, int k, int ky, mpm_real dt)
+static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r, mpm_real dt)
 {
+    const int k = w->support[0], ky = w->support[1];
     const mpm_points *q = &w->points;
     const mpm_body *b = &w->body[r->body];
     const mpm_body_desc *d = &b->desc;
@@ -1914,12 +1915,8 @@ MPM_API void mpm_forces(mpm_world *w, mpm_real dt)
     MPM__EACH_RUN(w, MPM__CALL);
 #undef MPM__CALL
     mpm__mirror_force(w, dt);
-#define MPM__CALL(k, ky, hoop)                                                       \
-    do {                                                                             \
-        if (w->body[run->body].desc.absorb) mpm__absorb_run(w, run, k, ky, dt); \
-    } while (0)
-    MPM__EACH_RUN(w, MPM__CALL);
-#undef MPM__CALL
+    for (i = 0; i < w->runs; i++)
+        if (w->body[w->run[i].body].desc.absorb) mpm__absorb_run(w, &w->run[i], dt);
     if (g[0] != 0 || g[1] != 0 || g[2] != 0)
         for (i = 0; i < w->nodes; i++)
             for (d = 0; d < 3; d++) {
@@ -1952,8 +1949,9 @@ MPM_API void mpm_grid_update(mpm_world *w, mpm_real dt)
    node: at a surface node, which has points on one side only, the sum points OUT of the body. (The
    gradient of the mass density, which points into it, is its negative.) In axisymmetry rings grow
    with the radius, which adds a term; inside a uniform body the sum then vanishes there too. */
-MPM__KERNEL void mpm__gradient_run(mpm_world *w, const mpm_run *r, int k, int ky, int hoop)
+static inline void mpm__gradient_run(mpm_world *w, const mpm_run *r)
 {
+    const int k = w->support[0], ky = w->support[1], hoop = w->desc.geometry == MPM_AXISYMMETRIC;
     const mpm_points *q = &w->points;
     mpm_real F[3][MPM__SUPPORT] = {{0}}, G[3][MPM__SUPPORT], N[MPM__SUPPORT];
     mpm__weights s;
@@ -2082,8 +2080,9 @@ static inline mpm_real mpm__point_radius(const mpm_world *w, int32_t i)
 
 /* Shows every point of a run to the pairs at the contact nodes it touches: to their planes if `fit`, else
    to their separations. Positions count from the node, in cells; across a mirror, in the image. */
-MPM__KERNEL void mpm__contact_points_run(mpm_world *w, const mpm_run *r, int k, int ky, int fit)
+static inline void mpm__contact_points_run(mpm_world *w, const mpm_run *r, int fit)
 {
+    const int k = w->support[0], ky = w->support[1];
     const int32_t *slot = mpm__run_nodes(w, r);
     const mpm_real inv = 1 / w->desc.cell;
     mpm_real N[MPM__SUPPORT];
@@ -2134,12 +2133,8 @@ static inline void mpm__plane_normals(mpm_world *w)
     int n, d;
     memset(w->plane, 0, (size_t)w->pairs * sizeof *w->plane);
     for (n = 0; n < MPM__PLANE_STEPS; n++) {
-#define MPM__CALL(k, ky, hoop)                                                                    \
-    do {                                                                                          \
-        if (run->flags & MPM_NODE_CONTACT) mpm__contact_points_run(w, run, k, ky, 1);             \
-    } while (0)
-        MPM__EACH_RUN(w, MPM__CALL);
-#undef MPM__CALL
+        for (i = 0; i < w->runs; i++)
+            if (w->run[i].flags & MPM_NODE_CONTACT) mpm__contact_points_run(w, &w->run[i], 1);
         for (i = 0; i < w->pairs; i++) mpm__plane_step(&w->plane[i]);
     }
     for (i = 0; i < w->pairs; i++) {
@@ -2157,12 +2152,8 @@ static inline void mpm__separations(mpm_world *w)
         w->pair[i].high = -MPM_R(1e30);
         w->pair[i].low = MPM_R(1e30);
     }
-#define MPM__CALL(k, ky, hoop)                                                                    \
-    do {                                                                                          \
-        if (run->flags & MPM_NODE_CONTACT) mpm__contact_points_run(w, run, k, ky, 0);             \
-    } while (0)
-    MPM__EACH_RUN(w, MPM__CALL);
-#undef MPM__CALL
+    for (i = 0; i < w->runs; i++)
+        if (w->run[i].flags & MPM_NODE_CONTACT) mpm__contact_points_run(w, &w->run[i], 0);
     for (i = 0; i < w->pairs; i++) w->pair[i].separation = w->pair[i].low - w->pair[i].high;
 }
 
@@ -2217,12 +2208,8 @@ MPM_API void mpm_contact_find(mpm_world *w)
         for (s = 0; s < reach; s++)
             if (w->node[w->slot[(size_t)i * (size_t)reach + (size_t)s]].sides & MPM_NODE_CONTACT)
                 w->run[i].flags |= MPM_NODE_CONTACT;
-#define MPM__CALL(k, ky, hoop)                                                              \
-    do {                                                                                    \
-        if (run->flags & MPM_NODE_CONTACT) mpm__gradient_run(w, run, k, ky, hoop); \
-    } while (0)
-    MPM__EACH_RUN(w, MPM__CALL);
-#undef MPM__CALL
+    for (i = 0; i < w->runs; i++)
+        if (w->run[i].flags & MPM_NODE_CONTACT) mpm__gradient_run(w, &w->run[i]);
     for (i = 0; i < w->pairs; i++) {
         mpm_pair *pair = &w->pair[i];
         mpm__constrain(w, &w->node[pair->a], w->node[pair->a].gradient, NULL);
@@ -2308,8 +2295,9 @@ MPM__KERNEL void mpm__g2p_run(mpm_world *w, const mpm_run *r, int k, int ky, mpm
 
 /* Points that reach through a symmetry plane take a ghost's acceleration with its sign turned: twice
    that share of their momentum comes from the mirror image. */
-MPM__KERNEL void mpm__mirror_run(mpm_world *w, const mpm_run *r, int k, int ky, mpm_real dt)
+static inline void mpm__mirror_run(mpm_world *w, const mpm_run *r, mpm_real dt)
 {
+    const int k = w->support[0], ky = w->support[1];
     mpm_real A[3][MPM__SUPPORT], N[MPM__SUPPORT];
     mpm__weights s;
     int32_t at;
@@ -2329,15 +2317,12 @@ MPM__KERNEL void mpm__mirror_run(mpm_world *w, const mpm_run *r, int k, int ky, 
 
 MPM_API void mpm_g2p(mpm_world *w, mpm_real dt)
 {
+    int32_t i;
 #define MPM__CALL(k, ky, hoop) mpm__g2p_run(w, run, k, ky, dt)
     MPM__EACH_RUN(w, MPM__CALL);
 #undef MPM__CALL
-#define MPM__CALL(k, ky, hoop)                                           \
-    do {                                                                 \
-        if (run->flags & 63) mpm__mirror_run(w, run, k, ky, dt); \
-    } while (0)
-    MPM__EACH_RUN(w, MPM__CALL);
-#undef MPM__CALL
+    for (i = 0; i < w->runs; i++)
+        if (w->run[i].flags & 63) mpm__mirror_run(w, &w->run[i], dt);
 }
 
 /* The mean nodal velocity of the step, through which nodal forces work on the points. */

@@ -410,9 +410,9 @@ static inline int32_t mpm__partner(const mpm_world *w, const mpm_node *node, int
 
 /* The surface points of a run in contact: with `grow` their D grows, with `nodes` it is added to the
    contact nodes around them. */
-MPM__KERNEL void mpm__bond_run(mpm_bond *grow, const mpm_bond *nodes, mpm_world *w, const mpm_run *r, int k, int ky,
-                               mpm_real dt)
+static inline void mpm__bond_run(mpm_bond *grow, const mpm_bond *nodes, mpm_world *w, const mpm_run *r, mpm_real dt)
 {
+    const int k = w->support[0], ky = w->support[1];
     mpm_points *q = &w->points;
     const int32_t *slot = mpm__run_nodes(w, r);
     const int noted = grow && grow->partner >= 0 && grow->partner < w->desc.user_fields;
@@ -448,19 +448,16 @@ MPM__KERNEL void mpm__bond_run(mpm_bond *grow, const mpm_bond *nodes, mpm_world 
 
 MPM_API void mpm_bond_grow(mpm_bond *b, mpm_world *w, mpm_real dt)
 {
+    int32_t i;
     if (b->rule == MPM_BOND_NONE || w->pairs == 0) return;
-#define MPM__CALL(k, ky, hoop) mpm__bond_run(b, NULL, w, run, k, ky, dt)
-    MPM__EACH_RUN(w, MPM__CALL);
-#undef MPM__CALL
+    for (i = 0; i < w->runs; i++) mpm__bond_run(b, NULL, w, &w->run[i], dt);
 }
 
 MPM_API void mpm_bond_nodes(const mpm_bond *b, mpm_world *w)
 {
     int32_t i;
     if (w->pairs == 0) return;
-#define MPM__CALL(k, ky, hoop) mpm__bond_run(NULL, b, w, run, k, ky, 0)
-    MPM__EACH_RUN(w, MPM__CALL);
-#undef MPM__CALL
+    for (i = 0; i < w->runs; i++) mpm__bond_run(NULL, b, w, &w->run[i], 0);
     for (i = 0; i < w->pairs; i++) {
         const mpm_real *a = w->node[w->pair[i].a].bond, *c = w->node[w->pair[i].b].bond;
         w->pair[i].bond = ((a[1] > 0 ? a[0] / a[1] : 0) + (c[1] > 0 ? c[0] / c[1] : 0)) / 2;

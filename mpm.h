@@ -261,7 +261,7 @@ typedef enum mpm_normal_rule {
     MPM_NORMAL_RANKED = 0, /* of the higher-numbered body; of the other where that vanishes */
     MPM_NORMAL_MVG,        /* of the body with the larger volume gradient */
     MPM_NORMAL_AVERAGE,    /* of the difference of the two volume gradients */
-    MPM_NORMAL_FIXED,      /* along z, from the lower- to the higher-numbered body's side */
+    MPM_NORMAL_FIXED,      /* along z: of two bodies the higher-numbered lies below */
     MPM_NORMAL_LOGISTIC    /* of the plane that parts their points best: logistic regression (Nairn,
                               Hammerquist, Smith 2020, Comput. Methods Appl. Mech. Engrg. 362, 112859) */
 } mpm_normal_rule;

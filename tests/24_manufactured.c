@@ -1,8 +1,9 @@
-/* 24_manufactured - a user's law with its own history; motions of large deformation with a known answer.
+/* 24_manufactured - a user's law with its own history; motions of large deformation and shocks with a known answer.
    SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "check.h"
 #include "manufactured.h"
+#include "shock.h"
 
 /* A law without stress that carries the volume ratio less 1, and counts wrong pointers. */
 static mpm_status carrying(void *material, const mpm_block *b)
@@ -76,9 +77,29 @@ static void motions(void)
     CHECK_NEAR("vortex, linear: error at 1/16", manufactured_error(&m), 0, 0.05);
 }
 
+/* Al on Al at 810 m/s, laboratory frame, two bodies, thin plates (verification page, 04). */
+static void shocks(void)
+{
+    shock s = shock_default("al", 810);
+    shock_state r;
+    double excess;
+    s.bodies = 2;
+    s.cells = 80;
+    r = shock_run(&s, 1);
+    CHECK_RELATIVE("shock: particle velocity", r.velocity, 405, 0.01);
+    CHECK_RELATIVE("shock: speed", r.speed, 5928.3, 0.01);
+    CHECK_RELATIVE("shock: pressure", r.pressure, 6482.6, 0.015);
+    CHECK_RELATIVE("shock: rho/rho0", r.ratio, 1.07333, 0.002);
+    CHECK_RELATIVE("shock: energy", r.energy, 0.5 * 405 * 405, 0.015);
+    CHECK_RELATIVE("shock: temperature", r.temperature, 346.81, 0.01);
+    excess = (r.energy - 0.5 * 405 * 405) / 900; /* thin plates: too much energy near the interface, all of it heat */
+    CHECK_RELATIVE("shock: heat less that of energy in excess", r.temperature - 298 - excess, 346.81 - 298, 0.01);
+}
+
 int main(void)
 {
     user_fields();
     motions();
+    shocks();
     return check_end();
 }

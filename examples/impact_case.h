@@ -371,4 +371,17 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
     return r;
 }
 
+/* Runs a case to its end and measures. Returns 1, or 0 with a message. */
+static inline int impact_run(const impact_case *c, impact_result *r, char *message, size_t n)
+{
+    mpm_status status = MPM_OK;
+    impact s;
+    if (!impact_begin(&s, c, message, n)) return 0;
+    while (status >= 0 && s.world.steps < s.steps) status = impact_step(&s);
+    if (status < 0) mpm_io_fault_text(message, n, &s.world.fault);
+    else *r = impact_measure(&s, c);
+    mpm_free(&s.world);
+    return status >= 0;
+}
+
 #endif

@@ -11,31 +11,29 @@ static const char *const names[MEASURES] = {"mean plastic strain", "plastic ener
                                             "restitution"};
 
 /* Means over four heights of the grid planes. Returns 1, or 0 after a message. */
-static int run(impact_case c, double value[MEASURES], double one[MEASURES])
+static int run(impact_case c, double value[MEASURES], double spread[MEASURES])
 {
+    double one[MEASURES], low[MEASURES], high[MEASURES];
     int k, i;
     for (i = 0; i < MEASURES; i++) value[i] = 0;
     for (k = 0; k < OFFSETS; k++) {
         char message[300];
         impact_result r;
-        impact s;
         c.offset = c.cell * k / OFFSETS;
-        if (!impact_begin(&s, &c, message, sizeof message)) {
-            fprintf(stderr, "%s\n", message);
+        if (!impact_run(&c, &r, message, sizeof message)) {
+            fprintf(stderr, "error: %s\n", message);
             return 0;
         }
-        while (s.world.steps < s.steps)
-            if (impact_step(&s) < 0) {
-                fprintf(stderr, "%s: %g\n", s.world.fault.field, (double)s.world.fault.value);
-                return 0;
-            }
-        r = impact_measure(&s, &c);
-        mpm_free(&s.world);
         one[STRAIN] = r.particle.plastic_strain_mean;
         one[WORK] = r.particle.plastic_work_mean;
         one[FLATTENING] = r.flattening;
         one[RESTITUTION] = r.relative / c.velocity;
-        for (i = 0; i < MEASURES; i++) value[i] += one[i] / OFFSETS;
+        for (i = 0; i < MEASURES; i++) {
+            value[i] += one[i] / OFFSETS;
+            low[i] = k && low[i] < one[i] ? low[i] : one[i];
+            high[i] = k && high[i] > one[i] ? high[i] : one[i];
+            spread[i] = high[i] - low[i];
+        }
     }
     return 1;
 }
@@ -43,7 +41,7 @@ static int run(impact_case c, double value[MEASURES], double one[MEASURES])
 int main(void)
 {
     static const char *const functions[] = {"linear", "gimp"};
-    double flat[MEASURES], solid[MEASURES], one[MEASURES];
+    double flat[MEASURES], solid[MEASURES], spread[2][MEASURES];
     char line[100];
     int f, i;
     verify_begin("Axisymmetry against 3D",
@@ -55,13 +53,20 @@ int main(void)
         c.bond = "none";
         c.functions = functions[f];
         c.dt_factor = 0.2;
-        if (!run(c, solid, one)) return 1;
+        if (!run(c, solid, spread[0])) return 1;
         c.geometry = "axisymmetric";
-        if (!run(c, flat, one)) return 1;
+        if (!run(c, flat, spread[1])) return 1;
         for (i = 0; i < MEASURES; i++) {
             snprintf(line, sizeof line, "%s, %s", names[i], functions[f]);
             verify_percent(line, "3D quarter, same grid", solid[i], flat[i], 5);
         }
+        snprintf(line, sizeof line, "spread of the restitution over the four, 3D, %s", functions[f]);
+        verify_measured(line, "highest less lowest", spread[0][RESTITUTION]);
+        snprintf(line, sizeof line, "spread of the restitution over the four, axisymmetric, %s", functions[f]);
+        verify_measured(line, "highest less lowest", spread[1][RESTITUTION]);
     }
+    verify_remark("Rebound takes 0.3 % of the impact's energy: a few per mille of it more or less move the restitution by "
+                  "its spread over grid positions. Where the means differ by less than that spread, the two geometries "
+                  "agree as well as either agrees with itself.");
     return verify_end();
 }

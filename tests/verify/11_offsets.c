@@ -20,42 +20,29 @@ static void statistics(const double *value, int n, double *mean, double *deviati
     *deviation = sqrt(square / (n - 1));
 }
 
-/* Runs a case to its end. Returns 1, or 0 after a message on stderr. */
-static int run(const impact_case *c, impact_result *r)
+static int complain(const char *message)
 {
-    char message[300];
-    impact s;
-    if (!impact_begin(&s, c, message, sizeof message)) {
-        fprintf(stderr, "%s\n", message);
-        return 0;
-    }
-    while (s.world.steps < s.steps)
-        if (impact_step(&s) < 0) {
-            fprintf(stderr, "%s of point %ld: %g\n", s.world.fault.field, s.world.fault.index, (double)s.world.fault.value);
-            mpm_free(&s.world);
-            return 0;
-        }
-    *r = impact_measure(&s, c);
-    mpm_free(&s.world);
-    return 1;
+    fprintf(stderr, "error: %s\n", message);
+    return 0;
 }
 
 /* One combination: eight grid positions, with and without the bond. Prints a row of the table. */
-static int combination(impact_case c, const char *name)
+static int combination(impact_case c)
 {
     double rebound[OFFSETS], noise[OFFSETS], strain[OFFSETS], pbcp[OFFSETS];
     double mean[4], deviation[4];
+    char message[300];
     int k, stays = 0;
     impact_result r;
     for (k = 0; k < OFFSETS; k++) {
         c.offset = c.cell * k / OFFSETS;
         c.bond = "none";
-        if (!run(&c, &r)) return 0;
+        if (!impact_run(&c, &r, message, sizeof message)) return complain(message);
         rebound[k] = r.relative;
         noise[k] = r.rebound.noise;
         strain[k] = r.particle.plastic_strain_mean;
         c.bond = "energy";
-        if (!run(&c, &r)) return 0;
+        if (!impact_run(&c, &r, message, sizeof message)) return complain(message);
         pbcp[k] = r.bond.pbcp;
         stays += fabs(r.relative) < 5;
     }
@@ -67,7 +54,6 @@ static int combination(impact_case c, const char *name)
            c.normal, c.separation ? "points" : "nodes", c.cell, c.spacing, mean[0], deviation[0], mean[1], mean[2],
            deviation[2], mean[3], deviation[3], stays, OFFSETS);
     fflush(stdout);
-    (void)name;
     return 1;
 }
 
@@ -91,7 +77,7 @@ int main(void)
                 c.functions = functions[f];
                 c.normal = normals[n];
                 c.separation = s;
-                if (!combination(c, "")) return 1;
+                if (!combination(c)) return 1;
             }
     return verify_end();
 }

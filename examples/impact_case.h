@@ -376,6 +376,7 @@ static inline int impact_run(const impact_case *c, impact_result *r, char *messa
 {
     mpm_status status = MPM_OK;
     impact s;
+    memset(r, 0, sizeof *r);
     if (!impact_begin(&s, c, message, n)) return 0;
     while (status >= 0 && s.world.steps < s.steps) status = impact_step(&s);
     if (status < 0) mpm_io_fault_text(message, n, &s.world.fault);

@@ -13,7 +13,7 @@ static const char *const names[MEASURES] = {"mean plastic strain", "plastic ener
 /* Means over four heights of the grid planes. Returns 1, or 0 after a message. */
 static int run(impact_case c, double value[MEASURES], double spread[MEASURES])
 {
-    double one[MEASURES], low[MEASURES], high[MEASURES];
+    double one[MEASURES], low[MEASURES] = {0}, high[MEASURES] = {0};
     int k, i;
     for (i = 0; i < MEASURES; i++) value[i] = 0;
     for (k = 0; k < OFFSETS; k++) {

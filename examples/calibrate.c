@@ -66,7 +66,7 @@ static int write_tasks(const calibration *q, const study *s, mpm_fault *fault)
 static int write_summary(const calibration *q, const calibration_result *r, const study *s, const option *o, int n,
                          mpm_fault *fault)
 {
-    char path[MPM_IO_PATH], text[256], name[40];
+    char path[MPM_IO_PATH], name[40];
     double theta[6];
     mpm_io_json j;
     int size, k;
@@ -99,13 +99,7 @@ static int write_summary(const calibration *q, const calibration_result *r, cons
         mpm_io_json_close(&j);
     }
     mpm_io_json_string(&j, "fit_parameters", strcmp(q->scale, "log") ? "G_c, Gdot_c" : "log10 G_c, log10 Gdot_c");
-    mpm_io_json_open(&j, "options");
-    for (k = 0; k < n; k++) {
-        option_text(&o[k], text, sizeof text);
-        if (o[k].type == OPTION_REAL) mpm_io_json_number(&j, o[k].name, *(double *)o[k].value);
-        else mpm_io_json_string(&j, o[k].name, text);
-    }
-    mpm_io_json_close(&j);
+    options_json(&j, o, n);
     return mpm_io_json_end(&j, fault) >= 0;
 }
 
@@ -170,53 +164,45 @@ static int check(const calibration *q, char *m, size_t n)
     return impact_check(&a, m, n) && impact_check(&b, m, n);
 }
 
-/* The options of a case but those that the sweep sets itself. */
-static int case_options(impact_case *c, option *o)
-{
-    static const char *const own[4] = {"diameter", "velocity", "gc", "gdot"};
-    int n = study_case_options(c, o), k, w;
-    for (w = 0; w < 4; w++) {
-        for (k = 0; strcmp(o[k].name, own[w]); k++) continue;
-        for (n--; k < n; k++) o[k] = o[k + 1];
-    }
-    return n;
-}
-
 int main(int argc, char **argv)
 {
     calibration q = calibration_default();
     study s = study_of("build/calibrate-out");
-    option o[STUDY_OPTIONS];
+    option o[IMPACT_OPTIONS];
     char message[400];
     long task = -1, tasks;
     int n, parsed, status = 1, listing = 0, collecting = 0, whole = 0;
-    n = case_options(&q.base, o);
-    study_option(o, &n, "substrate", OPTION_TEXT, &q.substrate, "thesis|large: source A's sizes, or 5 x 2.5 diameters");
-    study_option(o, &n, "gc-low", OPTION_REAL, &q.gc[0], "range of G_c, J/m2");
-    study_option(o, &n, "gc-high", OPTION_REAL, &q.gc[1], "");
-    study_option(o, &n, "gdot-low", OPTION_REAL, &q.gdot[0], "range of Gdot_c, J/m2/us");
-    study_option(o, &n, "gdot-high", OPTION_REAL, &q.gdot[1], "");
-    study_option(o, &n, "columns", OPTION_LONG, &q.columns, "values of G_c");
-    study_option(o, &n, "rows", OPTION_LONG, &q.rows, "values of Gdot_c");
-    study_option(o, &n, "scale", OPTION_TEXT, &q.scale, "log|linear: the steps, and what the fit sees");
-    study_option(o, &n, "plain", OPTION_FLAG, &q.plain, "run every pair, not only where the class changes");
-    study_option(o, &n, "diameter-1", OPTION_REAL, &q.diameter[0], "um");
-    study_option(o, &n, "velocity-1", OPTION_REAL, &q.velocity[0], "m/s");
-    study_option(o, &n, "diameter-2", OPTION_REAL, &q.diameter[1], "um");
-    study_option(o, &n, "velocity-2", OPTION_REAL, &q.velocity[1], "m/s");
-    study_option(o, &n, "rule", OPTION_TEXT, &q.rule, "thesis|stays: what counts as bonded, see critical_velocity");
-    study_option(o, &n, "pbcp-1", OPTION_REAL, &q.pbcp[0], "rule thesis: least PBCP, %; 0: source A's for the grid");
-    study_option(o, &n, "pbcp-2", OPTION_REAL, &q.pbcp[1], "");
-    study_option(o, &n, "restitution-1", OPTION_REAL, &q.restitution[0], "rule thesis: highest rebound ratio; 0: source A's");
-    study_option(o, &n, "restitution-2", OPTION_REAL, &q.restitution[1], "");
-    study_option(o, &n, "stays", OPTION_REAL, &q.stays, "rule stays: the late mean velocity is below, m/s");
-    study_option(o, &n, "whole-time", OPTION_FLAG, &whole, "do not end a run early when the particle has left");
-    study_option(o, &n, "limit", OPTION_LONG, &s.limit, "stop after so many new runs; < 0: never");
-    study_option(o, &n, "list", OPTION_FLAG, &listing, "print the tasks that are not done");
-    study_option(o, &n, "task", OPTION_LONG, &task, "do this task only; < 0: all");
-    study_option(o, &n, "collect", OPTION_FLAG, &collecting, "fit and draw what is done, run nothing");
-    study_option(o, &n, "out", OPTION_TEXT, &s.folder, "output folder");
-    study_option(o, &n, "quiet", OPTION_FLAG, &s.quiet, "no progress line, no table");
+    n = study_case_options(&q.base, o);
+    option_drop(o, &n, "diameter"); /* what the sweep sets */
+    option_drop(o, &n, "velocity");
+    option_drop(o, &n, "gc");
+    option_drop(o, &n, "gdot");
+    option_add(o, &n, "substrate", OPTION_TEXT, &q.substrate, "thesis|large: source A's sizes, or 5 x 2.5 diameters");
+    option_add(o, &n, "gc-low", OPTION_REAL, &q.gc[0], "range of G_c, J/m2");
+    option_add(o, &n, "gc-high", OPTION_REAL, &q.gc[1], "");
+    option_add(o, &n, "gdot-low", OPTION_REAL, &q.gdot[0], "range of Gdot_c, J/m2/us");
+    option_add(o, &n, "gdot-high", OPTION_REAL, &q.gdot[1], "");
+    option_add(o, &n, "columns", OPTION_LONG, &q.columns, "values of G_c");
+    option_add(o, &n, "rows", OPTION_LONG, &q.rows, "values of Gdot_c");
+    option_add(o, &n, "scale", OPTION_TEXT, &q.scale, "log|linear: the steps, and what the fit sees");
+    option_add(o, &n, "plain", OPTION_FLAG, &q.plain, "run every pair, not only where the class changes");
+    option_add(o, &n, "diameter-1", OPTION_REAL, &q.diameter[0], "um");
+    option_add(o, &n, "velocity-1", OPTION_REAL, &q.velocity[0], "m/s");
+    option_add(o, &n, "diameter-2", OPTION_REAL, &q.diameter[1], "um");
+    option_add(o, &n, "velocity-2", OPTION_REAL, &q.velocity[1], "m/s");
+    option_add(o, &n, "rule", OPTION_TEXT, &q.rule, "thesis|stays: what counts as bonded, see critical_velocity");
+    option_add(o, &n, "pbcp-1", OPTION_REAL, &q.pbcp[0], "rule thesis: least PBCP, %; 0: source A's for the grid");
+    option_add(o, &n, "pbcp-2", OPTION_REAL, &q.pbcp[1], "");
+    option_add(o, &n, "restitution-1", OPTION_REAL, &q.restitution[0], "rule thesis: highest rebound ratio; 0: source A's");
+    option_add(o, &n, "restitution-2", OPTION_REAL, &q.restitution[1], "");
+    option_add(o, &n, "stays", OPTION_REAL, &q.stays, "rule stays: the late mean velocity is below, m/s");
+    option_add(o, &n, "whole-time", OPTION_FLAG, &whole, "do not end a run early when the particle has left");
+    option_add(o, &n, "limit", OPTION_LONG, &s.limit, "stop after so many new runs; < 0: never");
+    option_add(o, &n, "list", OPTION_FLAG, &listing, "print the tasks that are not done");
+    option_add(o, &n, "task", OPTION_LONG, &task, "do this task only; < 0: all");
+    option_add(o, &n, "collect", OPTION_FLAG, &collecting, "fit and draw what is done, run nothing");
+    option_add(o, &n, "out", OPTION_TEXT, &s.folder, "output folder");
+    option_add(o, &n, "quiet", OPTION_FLAG, &s.quiet, "no progress line, no table");
     parsed = options_parse(argc, argv, "The bond parameters at which two sizes just bond: sweep, boundaries, crossing.\n"
                            "Writes tasks.csv, classes.png and summary.json; run again after an interruption, it goes on.", o, n);
     if (parsed) return parsed < 0;

@@ -93,7 +93,7 @@ static int draw_curve(const request *q, const critical_curve *curve, mpm_fault *
 static int write_summary(const request *q, const critical_answer *a, const critical_spread *s, const study *st,
                          const option *o, int n, mpm_fault *fault)
 {
-    char path[MPM_IO_PATH], text[256], name[40];
+    char path[MPM_IO_PATH], name[40];
     mpm_io_json j;
     int k;
     snprintf(path, sizeof path, "%s/summary.json", q->folder);
@@ -120,13 +120,7 @@ static int write_summary(const request *q, const critical_answer *a, const criti
         mpm_io_json_close(&j);
     }
     mpm_io_json_close(&j);
-    mpm_io_json_open(&j, "options");
-    for (k = 0; k < n; k++) {
-        option_text(&o[k], text, sizeof text);
-        if (o[k].type == OPTION_REAL) mpm_io_json_number(&j, o[k].name, *(double *)o[k].value);
-        else mpm_io_json_string(&j, o[k].name, text);
-    }
-    mpm_io_json_close(&j);
+    options_json(&j, o, n);
     return mpm_io_json_end(&j, fault) >= 0;
 }
 
@@ -172,7 +166,7 @@ int main(int argc, char **argv)
     impact_case c = study_case_default();
     study st = study_of("build/critical");
     request q;
-    option o[STUDY_OPTIONS];
+    option o[IMPACT_OPTIONS];
     char message[400];
     mpm_fault fault;
     int n, k, status, whole = 0, parsed;
@@ -182,24 +176,22 @@ int main(int argc, char **argv)
     q.rule = critical_rule_default();
     q.range = critical_range_default();
     n = study_case_options(&c, o);
-    for (k = 0; strcmp(o[k].name, "velocity"); k++) continue;
-    o[k] = o[--n]; /* what is looked for */
-    for (k = 0; strcmp(o[k].name, "grid-offset"); k++) continue;
-    o[k] = o[--n]; /* by --offsets */
-    study_option(o, &n, "substrate", OPTION_TEXT, &q.substrate, "thesis|large: source A's sizes, or 5 x 2.5 diameters");
-    study_option(o, &n, "rule", OPTION_TEXT, &q.rule.name, "thesis|stays: what counts as bonded");
-    study_option(o, &n, "pbcp", OPTION_REAL, &q.rule.pbcp, "rule thesis: least PBCP, %; 0: 5, at 14 um 4.8");
-    study_option(o, &n, "v-rest", OPTION_REAL, &q.rule.v_rest, "rule thesis: highest rebound, m/s; 0: 0.6, at 14 um 0.9");
-    study_option(o, &n, "stays", OPTION_REAL, &q.rule.stays, "rule stays: the late mean velocity is below, m/s");
-    study_option(o, &n, "low", OPTION_REAL, &q.range.low, "lowest velocity, m/s");
-    study_option(o, &n, "high", OPTION_REAL, &q.range.high, "highest velocity, m/s");
-    study_option(o, &n, "scan", OPTION_REAL, &q.range.scan, "distance of the first velocities, m/s");
-    study_option(o, &n, "step", OPTION_REAL, &q.range.step, "width of the bracket at the end, m/s");
-    study_option(o, &n, "offsets", OPTION_LONG, &q.offsets, "grid offsets: k/N of a cell, k = 0 .. N-1");
-    study_option(o, &n, "limit", OPTION_LONG, &st.limit, "stop after so many new runs; < 0: never");
-    study_option(o, &n, "whole-time", OPTION_FLAG, &whole, "do not end a run early when the particle has left");
-    study_option(o, &n, "out", OPTION_TEXT, &q.folder, "output folder");
-    study_option(o, &n, "quiet", OPTION_FLAG, &st.quiet, "no progress line, no table");
+    option_drop(o, &n, "velocity");    /* what is looked for */
+    option_drop(o, &n, "grid-offset"); /* by --offsets */
+    option_add(o, &n, "substrate", OPTION_TEXT, &q.substrate, "thesis|large: source A's sizes, or 5 x 2.5 diameters");
+    option_add(o, &n, "rule", OPTION_TEXT, &q.rule.name, "thesis|stays: what counts as bonded");
+    option_add(o, &n, "pbcp", OPTION_REAL, &q.rule.pbcp, "rule thesis: least PBCP, %; 0: 5, at 14 um 4.8");
+    option_add(o, &n, "v-rest", OPTION_REAL, &q.rule.v_rest, "rule thesis: highest rebound, m/s; 0: 0.6, at 14 um 0.9");
+    option_add(o, &n, "stays", OPTION_REAL, &q.rule.stays, "rule stays: the late mean velocity is below, m/s");
+    option_add(o, &n, "low", OPTION_REAL, &q.range.low, "lowest velocity, m/s");
+    option_add(o, &n, "high", OPTION_REAL, &q.range.high, "highest velocity, m/s");
+    option_add(o, &n, "scan", OPTION_REAL, &q.range.scan, "distance of the first velocities, m/s");
+    option_add(o, &n, "step", OPTION_REAL, &q.range.step, "width of the bracket at the end, m/s");
+    option_add(o, &n, "offsets", OPTION_LONG, &q.offsets, "grid offsets: k/N of a cell, k = 0 .. N-1");
+    option_add(o, &n, "limit", OPTION_LONG, &st.limit, "stop after so many new runs; < 0: never");
+    option_add(o, &n, "whole-time", OPTION_FLAG, &whole, "do not end a run early when the particle has left");
+    option_add(o, &n, "out", OPTION_TEXT, &q.folder, "output folder");
+    option_add(o, &n, "quiet", OPTION_FLAG, &st.quiet, "no progress line, no table");
     parsed = options_parse(argc, argv, "The lowest impact velocity that bonds. Writes curve.csv, curve.png and "
                            "summary.json\ninto the output folder; run again after an interruption, it goes on.", o, n);
     if (parsed) return parsed < 0;

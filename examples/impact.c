@@ -7,7 +7,7 @@
 
    The loop in main() is the method, one call per phase. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
-#include "impact_case.h"
+#include "impact_options.h"
 #include "program.h"
 
 #include <time.h>
@@ -279,53 +279,19 @@ int main(int argc, char **argv)
 {
     impact_case c = impact_case_default();
     output o = {"impact-out", 9, 0};
-    const option options[] = {
-        {"diameter", OPTION_REAL, &c.diameter, "particle diameter, um"},
-        {"velocity", OPTION_REAL, &c.velocity, "impact velocity, m/s"},
-        {"angle", OPTION_REAL, &c.angle, "velocity from the surface normal, degrees (with symmetry half, full)"},
-        {"shape", OPTION_TEXT, &c.shape, "of the particle: sphere|ellipsoid"},
-        {"aspect", OPTION_REAL, &c.aspect, "of an ellipsoid: height over width, at the volume of the sphere"},
-        {"material", OPTION_TEXT, &c.material, "of the particle"},
-        {"substrate-material", OPTION_TEXT, &c.substrate_material, "of the substrate; empty: as the particle"},
-        {"model", OPTION_TEXT, &c.model, "strength of both: preset|elastic|linear|jc|scg|ptw"},
-        {"temperature", OPTION_REAL, &c.temperature, "at the start, K: softens, expands nothing"},
-        {"substrate-temperature", OPTION_REAL, &c.substrate_temperature, "K; 0: as the particle"},
-        {"cell", OPTION_REAL, &c.cell, "grid cell edge, um"},
-        {"spacing", OPTION_REAL, &c.spacing, "distance of material points, um"},
-        {"substrate-diameter", OPTION_REAL, &c.substrate_diameter, "um"},
-        {"substrate-height", OPTION_REAL, &c.substrate_height, "um"},
-        {"time", OPTION_REAL, &c.time, "simulated time, ns"},
-        {"dt-factor", OPTION_REAL, &c.dt_factor, "time step over the critical step of a 0.5 um cell"},
-        {"bond", OPTION_TEXT, &c.bond, "energy|strain|none"},
-        {"bond-average", OPTION_TEXT, &c.bond_average, "D of a node from its surface points: mean|weighted|literal"},
-        {"gc", OPTION_REAL, &c.gc, "critical bond energy, J/m2"},
-        {"gdot", OPTION_REAL, &c.gdot, "critical bond energy rate, J/m2/us"},
-        {"eps-c", OPTION_REAL, &c.eps_c, "strain bond: critical strain"},
-        {"epsdot-c", OPTION_REAL, &c.epsdot_c, "strain bond: critical strain rate, 1/us"},
-        {"shell", OPTION_REAL, &c.shell, "thickness of the surface that contacts and bonds, spacings"},
-        {"floor", OPTION_REAL, &c.floor, "least value of the rate factor of the bond threshold"},
-        {"symmetry", OPTION_TEXT, &c.symmetry, "full|half (mirror y = 0)|quarter"},
-        {"geometry", OPTION_TEXT, &c.geometry, "3d|axisymmetric"},
-        {"functions", OPTION_TEXT, &c.functions, "shape functions: linear|gimp"},
-        {"friction", OPTION_REAL, &c.friction, "Coulomb coefficient between the bodies"},
-        {"normal", OPTION_TEXT, &c.normal, "contact normal: ranked|mvg|average|vertical|logistic"},
-        {"separation", OPTION_FLAG, &c.separation, "contact where the points themselves touch, not where they share a node"},
-        {"plasticity", OPTION_TEXT, &c.plasticity, "return mapping: consistent|staged"},
-        {"gap", OPTION_REAL, &c.gap, "distance of the bodies at the start, um"},
-        {"margin", OPTION_REAL, &c.margin, "free grid around the bodies, particle diameters"},
-        {"grid-offset", OPTION_REAL, &c.offset, "height of a grid plane above the interface, um"},
-        {"frames", OPTION_LONG, &o.frames, "pictures and ParaView files, evenly in time, both ends included"},
-        {"out", OPTION_TEXT, &o.folder, "output folder"},
-        {"quiet", OPTION_FLAG, &o.quiet, "no progress line, no table"},
-    };
-    const int n = (int)(sizeof options / sizeof options[0]);
+    option options[IMPACT_OPTIONS];
+    int n = impact_options(&c, options);
     const char *about = "A metal particle hits a metal plate: material point method with bonding.\n"
                         "Writes summary.json, impact.png, impact.pvd (ParaView) and frames into the output folder.";
     char message[300], path[1024];
     mpm_fault fault;
     impact s;
     double cpu = 0;
-    int parsed = options_parse(argc, argv, about, options, n), ok;
+    int parsed, ok;
+    option_add(options, &n, "frames", OPTION_LONG, &o.frames, "pictures and ParaView files, evenly in time, both ends included");
+    option_add(options, &n, "out", OPTION_TEXT, &o.folder, "output folder");
+    option_add(options, &n, "quiet", OPTION_FLAG, &o.quiet, "no progress line, no table");
+    parsed = options_parse(argc, argv, about, options, n);
     if (parsed) return parsed < 0 ? 1 : 0;
     if (o.frames < 0 || o.frames > 9999) {
         fprintf(stderr, "error: --frames %ld: must be 0 .. 9999\n", o.frames);

@@ -48,17 +48,17 @@ int main(int argc, char **argv)
     static particles_case q;
     double spread = 36, height = 0;
     long seed = 1;
-    option o[STUDY_OPTIONS];
+    option o[IMPACT_OPTIONS];
     char message[200];
     int n, parsed;
     q = particles_default("full", "many-out");
     q.count = 10;
     q.base.substrate_diameter = q.base.time = 0;
     n = particles_options(&q, o);
-    study_option(o, &n, "count", OPTION_LONG, &q.count, "particles, 1 .. 500");
-    study_option(o, &n, "spread", OPTION_REAL, &spread, "width of the region of their centres, um");
-    study_option(o, &n, "height", OPTION_REAL, &height, "of that region, um; 0: particles fill a fifth of it");
-    study_option(o, &n, "seed", OPTION_LONG, &seed, "of the places");
+    option_add(o, &n, "count", OPTION_LONG, &q.count, "particles, 1 .. 500");
+    option_add(o, &n, "spread", OPTION_REAL, &spread, "width of the region of their centres, um");
+    option_add(o, &n, "height", OPTION_REAL, &height, "of that region, um; 0: particles fill a fifth of it");
+    option_add(o, &n, "seed", OPTION_LONG, &seed, "of the places");
     parsed = options_parse(argc, argv, "Particles at random places and heights. --substrate-diameter 0: spread and one diameter;\n"
                            "--time 0: the fall from the full height and 40 ns. Writes particles.csv, pairs.csv,\n"
                            "summary.json and frames.", o, n);

@@ -20,6 +20,32 @@ typedef struct option {
     const char *help;
 } option;
 
+/* Puts an option behind the n of a table. */
+static inline void option_add(option *o, int *n, const char *name, option_type type, void *value, const char *help)
+{
+    o[*n].name = name;
+    o[*n].type = type;
+    o[*n].value = value;
+    o[*n].help = help;
+    (*n)++;
+}
+
+/* The option of that name among n. */
+static inline int option_find(const option *o, int n, const char *name)
+{
+    int k = 0;
+    while (k < n && strcmp(o[k].name, name)) k++;
+    return k;
+}
+
+/* Takes an option out of a table of n, so that a command line cannot set it. */
+static inline void option_drop(option *o, int *n, const char *name)
+{
+    int k = option_find(o, *n, name);
+    if (k < *n)
+        for ((*n)--; k < *n; k++) o[k] = o[k + 1];
+}
+
 /* The current value of o as text, into a buffer of n characters. */
 static inline void option_text(const option *o, char *buffer, size_t n)
 {

@@ -168,13 +168,13 @@ static inline int particles_picture(const impact *s, const particles_case *q, co
     mpm_io_cut_desc cut[2];
     mpm_fault fault;
     char time[32], title[96];
-    double edge = q->base.substrate_diameter / 2, top = q->base.diameter;
+    double edge = q->base.substrate_diameter / 2 + q->base.diameter / 2, top = q->base.diameter;
     long k;
     int i;
     snprintf(time, sizeof time, "t = %.1f ns", (double)w->time * 1e3);
     snprintf(title, sizeof title, "%ld x %s, %g um at %g m/s", q->count, q->base.material, q->base.diameter, q->base.velocity);
     for (k = 0; k < q->count; k++) {
-        edge = fmax(edge, fabs(q->center[k][0]) + q->base.diameter / 2);
+        edge = fmax(edge, fabs(q->center[k][0]) + q->base.diameter);
         top = fmax(top, q->center[k][2] + q->base.diameter / 2);
     }
     for (i = 0; i < 2; i++) {
@@ -203,7 +203,7 @@ static inline int particles_write(const impact *s, const particles_case *q, cons
     const mpm_world *w = &s->world;
     const mpm_bond_measure all = mpm_bond_measure_body(w, -1);
     const mpm_totals sums = mpm_body_totals(w, -1);
-    char path[MPM_IO_PATH], text[256];
+    char path[MPM_IO_PATH];
     long fates[5] = {0, 0, 0, 0, 0};
     mpm_io_csv t;
     mpm_io_json j;
@@ -257,13 +257,7 @@ static inline int particles_write(const impact *s, const particles_case *q, cons
                        (sums.kinetic + sums.internal + w->ledger.absorbed + w->ledger.contact + w->ledger.bond +
                         w->ledger.walls - s->start.kinetic - s->start.internal) / s->start.kinetic);
     mpm_io_json_number(&j, "cpu_seconds", cpu);
-    mpm_io_json_open(&j, "options");
-    for (k = 0; k < n; k++) {
-        option_text(&o[k], text, sizeof text);
-        if (o[k].type == OPTION_REAL) mpm_io_json_number(&j, o[k].name, *(double *)o[k].value);
-        else mpm_io_json_string(&j, o[k].name, text);
-    }
-    mpm_io_json_close(&j);
+    options_json(&j, o, n);
     return mpm_io_json_end(&j, fault) >= 0;
 }
 
@@ -325,10 +319,10 @@ say:
 /* The options that both programs have. */
 static inline int particles_options(particles_case *q, option *o)
 {
-    int n = study_case_options(&q->base, o);
-    study_option(o, &n, "frames", OPTION_LONG, &q->frames, "pictures, evenly in time");
-    study_option(o, &n, "out", OPTION_TEXT, &q->folder, "output folder");
-    study_option(o, &n, "quiet", OPTION_FLAG, &q->quiet, "no progress line, no table");
+    int n = impact_options(&q->base, o);
+    option_add(o, &n, "frames", OPTION_LONG, &q->frames, "pictures, evenly in time");
+    option_add(o, &n, "out", OPTION_TEXT, &q->folder, "output folder");
+    option_add(o, &n, "quiet", OPTION_FLAG, &q->quiet, "no progress line, no table");
     return n;
 }
 

@@ -4,61 +4,20 @@
 #ifndef STUDY_H
 #define STUDY_H
 
-#include "impact_case.h"
-#include "options.h"
+#include "impact_options.h"
+#include "program.h"
 
 #include <time.h>
 
 /* ---- the case ------------------------------------------------------------------------------ */
 
-#define STUDY_OPTIONS 64 /* room for the options of a case and a program's own */
-
-static inline void study_option(option *o, int *n, const char *name, option_type type, void *value, const char *help)
-{
-    o[*n].name = name;
-    o[*n].type = type;
-    o[*n].value = value;
-    o[*n].help = help;
-    (*n)++;
-}
-
-/* Everything that makes a case, as options: also what a finished run is known by. Returns their number. */
+/* The options of a case, with what 0 means in a study. Returns their number. */
 static inline int study_case_options(impact_case *c, option *o)
 {
-    int n = 0;
-    study_option(o, &n, "diameter", OPTION_REAL, &c->diameter, "particle diameter, um");
-    study_option(o, &n, "velocity", OPTION_REAL, &c->velocity, "impact velocity, m/s");
-    study_option(o, &n, "angle", OPTION_REAL, &c->angle, "velocity from the surface normal, degrees (3d, symmetry half or full)");
-    study_option(o, &n, "shape", OPTION_TEXT, &c->shape, "of the particle: sphere|ellipsoid");
-    study_option(o, &n, "aspect", OPTION_REAL, &c->aspect, "of an ellipsoid: height over width, at the volume of the sphere");
-    study_option(o, &n, "material", OPTION_TEXT, &c->material, "of the particle");
-    study_option(o, &n, "substrate-material", OPTION_TEXT, &c->substrate_material, "of the substrate; empty: as the particle");
-    study_option(o, &n, "model", OPTION_TEXT, &c->model, "strength of both: preset|elastic|linear|jc|scg|ptw");
-    study_option(o, &n, "temperature", OPTION_REAL, &c->temperature, "at the start, K");
-    study_option(o, &n, "substrate-temperature", OPTION_REAL, &c->substrate_temperature, "K; 0: as the particle");
-    study_option(o, &n, "cell", OPTION_REAL, &c->cell, "grid cell edge, um");
-    study_option(o, &n, "spacing", OPTION_REAL, &c->spacing, "distance of material points, um");
-    study_option(o, &n, "substrate-diameter", OPTION_REAL, &c->substrate_diameter, "um; 0: by --substrate");
-    study_option(o, &n, "substrate-height", OPTION_REAL, &c->substrate_height, "um; 0: by --substrate");
-    study_option(o, &n, "time", OPTION_REAL, &c->time, "simulated time, ns; 0: 80, in proportion beyond 30 um");
-    study_option(o, &n, "dt-factor", OPTION_REAL, &c->dt_factor, "time step over the critical step of a 0.5 um cell");
-    study_option(o, &n, "bond", OPTION_TEXT, &c->bond, "energy|strain|none");
-    study_option(o, &n, "bond-average", OPTION_TEXT, &c->bond_average, "D of a node from its surface points: mean|weighted|literal");
-    study_option(o, &n, "gc", OPTION_REAL, &c->gc, "critical bond energy, J/m2");
-    study_option(o, &n, "gdot", OPTION_REAL, &c->gdot, "critical bond energy rate, J/m2/us");
-    study_option(o, &n, "eps-c", OPTION_REAL, &c->eps_c, "strain bond: critical strain");
-    study_option(o, &n, "epsdot-c", OPTION_REAL, &c->epsdot_c, "strain bond: critical strain rate, 1/us");
-    study_option(o, &n, "shell", OPTION_REAL, &c->shell, "thickness of the surface that contacts and bonds, spacings");
-    study_option(o, &n, "floor", OPTION_REAL, &c->floor, "least value of the rate factor of the bond threshold");
-    study_option(o, &n, "symmetry", OPTION_TEXT, &c->symmetry, "in 3d: full|half|quarter");
-    study_option(o, &n, "geometry", OPTION_TEXT, &c->geometry, "3d|axisymmetric");
-    study_option(o, &n, "functions", OPTION_TEXT, &c->functions, "shape functions: linear|gimp");
-    study_option(o, &n, "friction", OPTION_REAL, &c->friction, "Coulomb coefficient between the bodies");
-    study_option(o, &n, "normal", OPTION_TEXT, &c->normal, "contact normal: ranked|mvg|average|vertical");
-    study_option(o, &n, "plasticity", OPTION_TEXT, &c->plasticity, "return mapping: consistent|staged");
-    study_option(o, &n, "gap", OPTION_REAL, &c->gap, "distance of the bodies at the start, um");
-    study_option(o, &n, "margin", OPTION_REAL, &c->margin, "free grid around the bodies, particle diameters");
-    study_option(o, &n, "grid-offset", OPTION_REAL, &c->offset, "height of a grid plane above the interface, um");
+    const int n = impact_options(c, o);
+    o[option_find(o, n, "substrate-diameter")].help = "um; 0: by --substrate";
+    o[option_find(o, n, "substrate-height")].help = "um; 0: by --substrate";
+    o[option_find(o, n, "time")].help = "simulated time, ns; 0: 80, in proportion beyond 30 um";
     return n;
 }
 
@@ -94,9 +53,9 @@ static inline void study_complete(impact_case *c, const char *substrate)
 static inline void study_key(const impact_case *c, int early, char *key, size_t n)
 {
     impact_case copy = *c;
-    option o[STUDY_OPTIONS];
+    option o[IMPACT_OPTIONS];
     char value[64];
-    int k, count = study_case_options(&copy, o);
+    int k, count = impact_options(&copy, o);
     size_t at = (size_t)snprintf(key, n, "mpm %s, %d digits, %s", MPM_VERSION, MPM_DIGITS, early ? "early end" : "full time");
     for (k = 0; k < count && at < n; k++) {
         option_text(&o[k], value, sizeof value);

@@ -10,13 +10,13 @@ int main(int argc, char **argv)
 {
     static particles_case q;
     double offset = 0, height = 30;
-    option o[STUDY_OPTIONS];
+    option o[IMPACT_OPTIONS];
     char message[200];
     int n, parsed;
     q = particles_default("half", "two-out");
     n = particles_options(&q, o);
-    study_option(o, &n, "offset", OPTION_REAL, &offset, "of the second particle along x, um");
-    study_option(o, &n, "height", OPTION_REAL, &height, "of its centre over the substrate, um");
+    option_add(o, &n, "offset", OPTION_REAL, &offset, "of the second particle along x, um");
+    option_add(o, &n, "height", OPTION_REAL, &height, "of its centre over the substrate, um");
     parsed = options_parse(argc, argv, "Two particles, one after the other, on one spot or beside it.\n"
                            "Writes particles.csv, pairs.csv, summary.json and frames.", o, n);
     if (parsed) return parsed < 0;

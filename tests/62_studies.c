@@ -1,10 +1,8 @@
 /* 62_studies - the study programs (made by make before the tests) on coarse grids: one number of each is
    checked, an interrupted study goes on without repeating a run, bad input is refused.
    SPDX-License-Identifier: MIT */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
+#define MPM_IMPLEMENTATION
+#include "study.h"
 #include "check.h"
 
 #define FOLDER "build/tests/studies"
@@ -170,8 +168,23 @@ static void particles(void)
     refused("many_particles --velocity 0", "velocity 0");
 }
 
+/* Runs are known by their options: a member without one would mix different cases up. */
+static void members(void)
+{
+    impact_case c = impact_case_default();
+    option o[IMPACT_OPTIONS];
+    size_t bytes[3] = {0, 0, 0};
+    int k, n = impact_options(&c, o);
+    for (k = 0; k < n; k++) bytes[o[k].type == OPTION_FLAG ? 0 : 1] += o[k].type == OPTION_FLAG  ? sizeof(int)
+                                                                 : o[k].type == OPTION_REAL ? sizeof(double)
+                                                                                            : sizeof(char *);
+    bytes[0] = (bytes[0] + sizeof(double) - 1) / sizeof(double) * sizeof(double); /* padded together */
+    CHECK_EQUAL("every member of a case is an option", bytes[0] + bytes[1], sizeof c);
+}
+
 int main(void)
 {
+    members();
     critical();
     calibration();
     particles();

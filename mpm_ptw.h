@@ -190,8 +190,9 @@ typedef struct mpm_material {
     mpm_real specific_heat;  /* Cp [energy/(mass K)], > 0 where plastic work heats */
     mpm_real temperature;    /* initial [K], >= 0 */
     mpm_real heat_fraction;  /* chi, the part of plastic work that heats (A 3.44), 0 .. 1 */
-    int compression_heating; /* 1: compression (dT = -Gamma0 T dV/V0) and the work of the bulk viscosity heat too; 0:
-                                they do not, as in source A (default). Test: 11_update "compression" */
+    int compression_heating; /* 1: compression (dT = -Gamma0 T dV/V0, Mie-Grueneisen only) and the work of the bulk
+                                viscosity heat too; 0: they do not, as in source A (default).
+                                Tests: 11_update "compression", 24_manufactured "shock" */
     mpm_real young, poisson; /* for wave speeds and the linear equation of state */
 
     mpm_real shear_modulus;        /* mu0: at T = 0 for MTS, at 300 K and p = 0 otherwise [stress] */

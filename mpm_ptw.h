@@ -227,7 +227,7 @@ typedef struct mpm_material {
 /* ---- presets ------------------------------------------------------------------------------- */
 
 /* An elastic material with nothing set: chi 0.9, shear_floor 1e-3, temperature 298 K, consistent
-   return, proper rotation. Set at least density, young and poisson. */
+   return, proper rotation. Set at least density, young, poisson and shear_modulus. */
 MPM_API mpm_material mpm_material_default(void);
 
 /* Fills *m with the named metal and its preferred strength, in the given units.

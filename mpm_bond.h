@@ -44,10 +44,8 @@
 #define mpm_restitution_from mpm_restitution_from_f32
 #define mpm_splat_measure mpm_splat_measure_f32
 #define mpm_grip_apply mpm_grip_apply_f32
-#define mpm_grip_hold mpm_grip_hold_f32
 #define mpm_pull_begin mpm_pull_begin_f32
 #define mpm_pull_apply mpm_pull_apply_f32
-#define mpm_pull_hold mpm_pull_hold_f32
 #define mpm_bonded_fraction mpm_bonded_fraction_f32
 #define mpm_relative_strength mpm_relative_strength_f32
 #define mpm_critical_velocity_2003 mpm_critical_velocity_2003_f32
@@ -136,7 +134,8 @@ MPM_API void mpm_bond_nodes(const mpm_bond *b, mpm_world *w);
 typedef struct mpm_bond_measure {
     long contacted;      /* surface points with D > 0 */
     long bonded;         /* ... with D >= 1 */
-    double pbcp;         /* bonded / contacted [%] (A 5.1), by area: in axisymmetry a point is a ring; 0 without contact */
+    double pbcp;         /* bonded / contacted [%] (A 5.1), by area: in axisymmetry a point is a ring; 0
+                            without contact */
     double abp;          /* mean D over contacted points, by area */
     double bonded_mass, contacted_mass;
     double bonded_area, contacted_area; /* [length^2]; in plane strain per depth */
@@ -199,7 +198,7 @@ MPM_API mpm_splat mpm_splat_measure(const mpm_world *w, int32_t particle, int32_
    the grip gives is in the ledger: its impulse in `impulse`, its work in `walls` (negative: brought in). */
 typedef struct mpm_grip {
     int32_t body;
-    mpm_real low, high;   /* heights [length], advanced by mpm_grip_hold */
+    mpm_real low, high;   /* heights [length] */
     mpm_real velocity[3]; /* [length/time] */
     int axes;             /* bit d: direction d is prescribed; 4: z alone, 7: all */
     long nodes;           /* how many it held in the last step */
@@ -208,9 +207,6 @@ typedef struct mpm_grip {
 
 /* Between mpm_contact_apply and mpm_g2p. Test: 32_pull. */
 MPM_API void mpm_grip_apply(mpm_grip *g, mpm_world *w, mpm_real dt);
-
-/* Between mpm_musl, which averages the prescribed velocity away, and mpm_stress. Test: 32_pull. */
-MPM_API void mpm_grip_hold(mpm_grip *g, mpm_world *w, mpm_real dt);
 
 /* How strong is the bond? Two bodies, one upon the other, are drawn apart along z: the lower held fast
    below a height, the upper drawn up above another. Heights are moved to the middle between grid planes,
@@ -238,11 +234,9 @@ typedef struct mpm_pull {
 /* MPM_ERR_ARGUMENT / NAN with the field. The world is only read. Test: 32_pull. */
 MPM_API mpm_status mpm_pull_begin(mpm_pull *p, const mpm_world *w, const mpm_pull_desc *d, mpm_fault *fault);
 
-/* As mpm_grip_apply, for both grips. */
-MPM_API void mpm_pull_apply(mpm_pull *p, mpm_world *w, mpm_real dt);
-
-/* As mpm_grip_hold, for both. Returns 1 when a sample is complete: force, grip_force and peak are new. */
-MPM_API int mpm_pull_hold(mpm_pull *p, mpm_world *w, mpm_real dt);
+/* As mpm_grip_apply, for both grips. Returns 1 when a sample is complete: force, grip_force and the peak
+   are new; else 0. Test: 32_pull. */
+MPM_API int mpm_pull_apply(mpm_pull *p, mpm_world *w, mpm_real dt);
 
 /* ---- estimates from the literature ------------------------------------------------------------ */
 
@@ -671,19 +665,6 @@ MPM_API void mpm_grip_apply(mpm_grip *g, mpm_world *w, mpm_real dt)
         }
         g->nodes++;
     }
-}
-
-MPM_API void mpm_grip_hold(mpm_grip *g, mpm_world *w, mpm_real dt)
-{
-    int32_t i;
-    int d;
-    for (i = 0; i < w->nodes; i++) {
-        mpm_node *n = &w->node[i];
-        if (!mpm__gripped(g, w, n)) continue;
-        for (d = 0; d < 3; d++)
-            if (g->axes >> d & 1) n->velocity[d] = g->velocity[d];
-        mpm__constrain(w, n, n->velocity, NULL);
-    }
     g->low += g->velocity[2] * dt;
     g->high += g->velocity[2] * dt;
 }
@@ -721,7 +702,7 @@ MPM_API mpm_status mpm_pull_begin(mpm_pull *p, const mpm_world *w, const mpm_pul
     return MPM_OK;
 }
 
-MPM_API void mpm_pull_apply(mpm_pull *p, mpm_world *w, mpm_real dt)
+MPM_API int mpm_pull_apply(mpm_pull *p, mpm_world *w, mpm_real dt)
 {
     const double t = p->time + (double)dt, ramp = (double)p->desc.ramp;
     p->grip[0].velocity[2] = t < ramp ? (mpm_real)(t / ramp) * p->desc.velocity : p->desc.velocity;
@@ -733,12 +714,6 @@ MPM_API void mpm_pull_apply(mpm_pull *p, mpm_world *w, mpm_real dt)
     p->separation += (double)(p->grip[0].velocity[2] * dt);
     p->time = t;
     p->since += (double)dt;
-}
-
-MPM_API int mpm_pull_hold(mpm_pull *p, mpm_world *w, mpm_real dt)
-{
-    mpm_grip_hold(&p->grip[0], w, dt);
-    mpm_grip_hold(&p->grip[1], w, dt);
     if (p->since < (double)p->desc.sample * (1 - 1e-9)) return 0;
     p->force = p->sum[0] / p->since;
     p->grip_force = p->sum[1] / p->since;
@@ -918,10 +893,10 @@ MPM_API mpm_status mpm_bond_logistic_fit(mpm_logistic *fit, const double *x1, co
         for (share = 1; share > 1e-12; share /= 2) { /* the cost must fall, unless nothing is left to gain */
             for (i = 0; i < MPM__TERMS; i++) fit->theta[i] = from[i] - share * d[i];
             if (mpm__logistic_cost(fit, x1, x2, outcome, n, ridge, NULL, NULL) <= now - 1e-4 * share * gain ||
-                gain <= 1e-14 * now)
+                gain <= 1e-12 * now)
                 break;
         }
-        if (gain <= 1e-14 * now) return MPM_OK;
+        if (gain <= 1e-12 * now) return MPM_OK;
     }
     return MPM_NOT_CONVERGED;
 }

@@ -84,12 +84,9 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
         mpm_forces(w, dt);
         mpm_grid_update(w, dt);
         mpm_contact_find(w);
-        mpm_bond_nodes(&s->bond, w);   /* without mpm_bond_grow: the bond is made */
+        mpm_bond_nodes(&s->bond, w); /* without mpm_bond_grow: the bond is made */
         mpm_contact_apply(w, dt);
-        mpm_pull_apply(p, w, dt);      /* grips give the nodes their velocity ... */
-        mpm_g2p(w, dt);
-        mpm_musl(w, dt);
-        if (mpm_pull_hold(p, w, dt)) { /* ... and keep it */
+        if (mpm_pull_apply(p, w, dt)) { /* the grips give their nodes their velocity */
             met = mpm_bond_interface(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
             c->separation[c->count] = (mpm_real)p->separation;
             c->stress[c->count++] = (mpm_real)(p->force / p->desc.area);
@@ -103,6 +100,8 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
             mpm_io_csv_integer(table, met.held);
             if (met.nodes == 0) return 1;
         }
+        mpm_g2p(w, dt);
+        mpm_musl(w, dt);
         if (mpm_stress(w, dt) < 0) return report(&w->fault, "stress");
         mpm_move(w, dt);
     } while (p->separation < o->distance && c->count < c->room);

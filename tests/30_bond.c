@@ -273,6 +273,7 @@ static void partners(void)
     CHECK_EQUAL("beside the neighbour: partner the neighbour", w.points.user[1][point_at(&w, 0, -0.25, 2.25)], 2);
     CHECK_EQUAL("under the right cube: partner that", w.points.user[1][point_at(&w, 2, 2.25, -0.25)], 2);
     CHECK_EQUAL("under the left cube: partner that", w.points.user[1][point_at(&w, 2, -2.25, -0.25)], 1);
+    CHECK_EQUAL("at the edge of three: the one with most mass", w.points.user[1][point_at(&w, 0, -0.25, 0.25)], 3);
     CHECK_EQUAL("touching nothing: none", w.points.user[1][point_at(&w, 0, -3.75, 3.75)], 0);
     mpm_bond_measure_pair(&b, &w, 0, 1, &both);
     mpm_bond_measure_pair(&b, &w, 0, 2, &one);

@@ -131,7 +131,9 @@ static void boundaries(void)
     CHECK_NEAR("... and 1.6", root[1], 1.6, 1e-14);
     CHECK_EQUAL("one root in range", mpm_bond_logistic_roots(&circle, 1.2, 0, 9, root), 1);
     CHECK_EQUAL("none beyond the circle", mpm_bond_logistic_roots(&circle, 2.1, -9, 9, root), 0);
-    CHECK_EQUAL("a touching root counts once", mpm_bond_logistic_roots(&circle, 2, -9, 9, root), 1);
+    wide = known(1, 0, -2, 0, 0, 1); /* (x2 - 1)^2 = 0 */
+    CHECK_EQUAL("a touching root counts once", mpm_bond_logistic_roots(&wide, 2, -9, 9, root), 1);
+    wide = circle;
     CHECK_EQUAL("a straight boundary", mpm_bond_logistic_roots(&line, 0.25, -9, 9, root), 1);
     CHECK_NEAR("... at 0.75", root[0], 0.75, 1e-15);
 
@@ -190,6 +192,17 @@ static void pair(void)
     CHECK_RELATIVE("... and Gdot_c", q[0][1] / unit[1], p[0][1], 1e-8);
 }
 
+/* Found by search: whole Newton steps run away from these nine tests. */
+static void stubborn(void)
+{
+    const double x1[] = {0.000983, 0.307, 1e-13, 0.00111, 0.473, 0.00611, 0.403, 0.0223, 0.00341};
+    const double x2[] = {2.3e-06, 0.00552, 0.0146, 0.000575, 0.0359, 0.353, 1.28e-08, 0.00262, 0.417};
+    const int y[] = {0, 0, 1, 0, 0, 1, 1, 1, 0};
+    mpm_logistic f;
+    CHECK_EQUAL("where whole steps diverge", mpm_bond_logistic_fit(&f, x1, x2, y, 9, 1e-6, 50, NULL), MPM_OK);
+    CHECK_TRUE("... damped ones settle", f.cost < 0.6931);
+}
+
 static void refusals(void)
 {
     double x1[6] = {0, 1, 2, 0, 1, 2}, x2[6] = {0, 0, 1, 1, 3, 2};
@@ -227,6 +240,7 @@ int main(void)
     separable();
     boundaries();
     pair();
+    stubborn();
     refusals();
     return check_end();
 }

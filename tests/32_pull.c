@@ -62,7 +62,6 @@ static int step(mpm_pull *p, mpm_world *w, const mpm_bond *b, mpm_real dt)
     mpm_pull_apply(p, w, dt);
     mpm_g2p(w, dt);
     mpm_musl(w, dt);
-    mpm_pull_hold(p, w, dt);
     if (mpm_stress(w, dt) < 0) return -1;
     mpm_move(w, dt);
     return 0;
@@ -105,6 +104,7 @@ static void elastic(void)
     CHECK_NEAR("momentum comes from the grips", t.momentum[2], w.ledger.impulse[2],
                1e4 * (double)MPM_EPSILON * fabs(p.force) * p.time);
     CHECK_EQUAL("the grip holds two planes", p.grip[0].nodes, 50);
+    CHECK_RELATIVE("... and goes along", p.grip[0].low, 2.5 + p.separation, 1e4 * (double)MPM_EPSILON);
     mpm_free(&w);
 }
 
@@ -139,6 +139,34 @@ static void unbonded(void)
     CHECK_NEAR("bear nothing", p.peak_stress, 0, 1e-6 * young);
     CHECK_NEAR("the upper one goes along", upper.low[2] - 0.25, p.separation, 0.05 * p.separation);
     CHECK_NEAR("the lower one stays", lower.high[2] + 0.25, 0, 1e-3 * p.separation);
+    mpm_free(&w);
+}
+
+/* A grip alone, through both cubes: it takes the nodes of its body only, in its directions only. */
+static void grip(void)
+{
+    mpm_material m;
+    mpm_world w = cubes(&m, 0);
+    const mpm_real dt = MPM_R(1e-5);
+    mpm_grip g;
+    memset(&g, 0, sizeof g);
+    g.body = 1;
+    g.low = MPM_R(-9.0);
+    g.high = MPM_R(-0.5);
+    g.velocity[0] = 5;
+    g.velocity[2] = 2;
+    g.axes = 4;
+    mpm_locate(&w);
+    mpm_p2g(&w);
+    mpm_grip_apply(&g, &w, dt);
+    CHECK_EQUAL("below the interface: four planes of 25 nodes", g.nodes, 100);
+    CHECK_RELATIVE("momentum of 3.5 layers of 16 um2", g.impulse[2], 2 * 2.7 * 16 * 3.5, 1e3 * (double)MPM_EPSILON);
+    CHECK_NEAR("nothing across", g.impulse[0], 0, 0);
+    g.high = 9;
+    g.axes = 1;
+    mpm_grip_apply(&g, &w, dt);
+    CHECK_EQUAL("through both: its body's planes", g.nodes, 125);
+    CHECK_RELATIVE("... the whole body", g.impulse[0], 5 * 2.7 * 64, 1e3 * (double)MPM_EPSILON);
     mpm_free(&w);
 }
 
@@ -217,6 +245,7 @@ int main(void)
     elastic();
     yields();
     unbonded();
+    grip();
     refusals();
     return check_end();
 }

@@ -333,8 +333,9 @@ int main(void)
         "small amplitude (Poisson's ratio 0.33) fall on the damped bottom of a plate in plane strain. Two mirrors make "
         "the plate endless: a packet of pairs of plane waves with one wave number along the face, Gaussian in the "
         "other direction. Expected is the share of energy that the boundary conditions s_zz = a rho Vp v_z, "
-        "s_xz = b rho Vs v_x send back as P and SV waves, for each plane wave of the packet, summed. Tolerance: 0.5 % of the incident "
-        "energy once the cell is extrapolated to 0. Not shown: strong waves, yielding material, waves on the curved "
+        "s_xz = b rho Vs v_x send back as P and SV waves, for each plane wave of the packet, summed. Tolerance: "
+        "0.5 % of the incident energy once the cell is extrapolated to 0. Not shown: strong waves, yielding "
+        "material, waves on the curved "
         "face.");
     for (i = 0; i < 4; i++) {
         packet k = {P_WAVE, 0, 1, 160, 0, 1};

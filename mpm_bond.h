@@ -9,6 +9,16 @@
          mpm_bond_nodes(&bond, &w);        D of the nodes where bodies meet
          mpm_contact_apply(&w, dt);        separating pairs with D >= 1 are held together
 
+     A second model of bonding: bond.rule = MPM_BOND_USER with your bond.grow, which says by how much D of a
+     point grew; and your bond.decide, which says whether a pair of bodies holds at a node.
+
+   CONTENTS
+     growth and decision   mpm_bond_*
+     measures              _measure_body, _measure_pair, _interface; mpm_restitution, mpm_splat_measure
+     pulling apart         mpm_grip_*, mpm_pull_*
+     literature            mpm_bonded_fraction, mpm_relative_strength, mpm_critical_velocity_*
+     calibration           mpm_bond_logistic_*
+
    THE MODEL (source A, chapter 4). A surface point that is in contact and flows plastically dissipates
    sigma d(eps) per volume; times the cell edge that is an energy per area, dG. It bonds when enough
    has been dissipated fast enough: dD = dG / G_b, with G_b = G_c (1 - ln(dG / (Gdot_c dt))), and a

@@ -14,7 +14,7 @@
 
    The loop in draw() is the method with a grip in it. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
-#include "impact_case.h"
+#include "impact_options.h"
 #include "program.h"
 
 /* What to do after the impact. */
@@ -219,39 +219,20 @@ int main(int argc, char **argv)
 {
     impact_case c = impact_case_default();
     pull_case o = {20, 20, 5, 4, 3, "pull-out", 0};
-    const option options[] = {
-        {"diameter", OPTION_REAL, &c.diameter, "particle diameter, um"},
-        {"velocity", OPTION_REAL, &c.velocity, "impact velocity, m/s"},
-        {"material", OPTION_TEXT, &c.material, "of the particle"},
-        {"substrate-material", OPTION_TEXT, &c.substrate_material, "of the substrate; empty: as the particle"},
-        {"temperature", OPTION_REAL, &c.temperature, "at the start, K"},
-        {"cell", OPTION_REAL, &c.cell, "grid cell edge, um"},
-        {"spacing", OPTION_REAL, &c.spacing, "distance of material points, um"},
-        {"substrate-diameter", OPTION_REAL, &c.substrate_diameter, "um"},
-        {"substrate-height", OPTION_REAL, &c.substrate_height, "um"},
-        {"time", OPTION_REAL, &c.time, "of the impact, ns"},
-        {"dt-factor", OPTION_REAL, &c.dt_factor, "time step over the critical step of a 0.5 um cell"},
-        {"bond", OPTION_TEXT, &c.bond, "energy|strain|none"},
-        {"gc", OPTION_REAL, &c.gc, "critical bond energy, J/m2"},
-        {"gdot", OPTION_REAL, &c.gdot, "critical bond energy rate, J/m2/us"},
-        {"symmetry", OPTION_TEXT, &c.symmetry, "full|half (mirror y = 0)|quarter"},
-        {"geometry", OPTION_TEXT, &c.geometry, "3d|axisymmetric"},
-        {"functions", OPTION_TEXT, &c.functions, "shape functions: linear|gimp"},
-        {"grid-offset", OPTION_REAL, &c.offset, "height of a grid plane above the interface, um"},
-        {"pull-velocity", OPTION_REAL, &o.velocity, "of the upper grip, m/s"},
-        {"ramp", OPTION_REAL, &o.ramp, "time to reach it, ns"},
-        {"sample", OPTION_REAL, &o.sample, "time over which the force is averaged, ns"},
-        {"distance", OPTION_REAL, &o.distance, "way of the grip, unless the bodies part before, um"},
-        {"grip", OPTION_REAL, &o.grip, "height of the particle's cap that is gripped, um"},
-        {"out", OPTION_TEXT, &o.folder, "output folder"},
-        {"quiet", OPTION_FLAG, &o.quiet, "print nothing"},
-    };
-    const int n = (int)(sizeof options / sizeof options[0]);
+    option options[IMPACT_OPTIONS];
+    int n = impact_options(&c, options);
     char message[300];
     mpm_fault fault;
     curve k;
     impact s;
     int parsed, ok;
+    option_add(options, &n, "pull-velocity", OPTION_REAL, &o.velocity, "of the upper grip, m/s");
+    option_add(options, &n, "ramp", OPTION_REAL, &o.ramp, "time to reach it, ns");
+    option_add(options, &n, "sample", OPTION_REAL, &o.sample, "time over which the force is averaged, ns");
+    option_add(options, &n, "distance", OPTION_REAL, &o.distance, "way of the grip, unless the bodies part before, um");
+    option_add(options, &n, "grip", OPTION_REAL, &o.grip, "height of the particle's cap that is gripped, um");
+    option_add(options, &n, "out", OPTION_TEXT, &o.folder, "output folder");
+    option_add(options, &n, "quiet", OPTION_FLAG, &o.quiet, "print nothing");
     c.geometry = "axisymmetric";
     c.cell = 1;
     c.spacing = 0.25;

@@ -228,6 +228,30 @@ static void interface(void)
     mpm_free(&w);
 }
 
+/* A disc of radius 2 um in rings, by both shape functions: its area is pi 2^2. */
+static void rings(void)
+{
+    mpm_units u = mpm_units_um_us_ng();
+    mpm_material m = scene_metal(1, u);
+    mpm_body_desc disc = scene_body(&m, mpm_cylinder(0, 0, 0, 2, 4), 0.5, 0);
+    mpm_body_desc slab = scene_body(&m, mpm_cylinder(0, 0, -4, 6, 4), 0.5, 0);
+    int gimp;
+    for (gimp = 0; gimp < 2; gimp++) {
+        mpm_desc d = scene_grid(1, 8, 8, 12, 0, 0, -6);
+        mpm_world w;
+        d.geometry = MPM_AXISYMMETRIC;
+        d.shape = gimp ? MPM_GIMP : MPM_LINEAR;
+        d.side[0] = MPM_SIDE_SYMMETRY;
+        mpm_init(&w, &d, NULL, 0);
+        mpm_body_add(&w, &disc);
+        mpm_body_add(&w, &slab);
+        find_contact(&w);
+        CHECK_RELATIVE(gimp ? "area in rings, GIMP" : "area in rings, linear", mpm_bond_interface(&w, 0, 1).area,
+                       3.14159265358979 * 4, 1e3 * eps);
+        mpm_free(&w);
+    }
+}
+
 static mpm_real quarter(void *context, const mpm_world *w, int32_t point, mpm_real dt)
 {
     (void)context;
@@ -390,6 +414,7 @@ int main(void)
     averages();
     rules();
     interface();
+    rings();
     partners();
     splats();
     literature();

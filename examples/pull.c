@@ -8,9 +8,10 @@
    Expect (defaults, axisymmetric, half a minute): 300 MPa at 810 m/s, of 296 um2 in contact 135 um2 at
    bonded nodes, a ring at the crater's wall; nothing at 700 m/s and with --bond none, where the particle
    has left. The answer is no number to design with: 501, 300, 230 MPa with cells of 1.5, 1, 0.7 um, for a
-   bonded node binds a cell on either side; 259 and 470 MPa at 900 and 1000 m/s; and it rises with the grip's
-   speed (448, 501, 531 MPa at 10, 20, 40 m/s, cell 1.5 um), as the metal's strength does. Source A names
-   bond strength as an aim (chapter 4) and prints no number.
+   bonded node binds a cell on either side; 131 MPa in 3D (cell 1.5 um: 28 um2 at bonded nodes, where in
+   rings 130 bond at once); 259 and 470 MPa at 900 and 1000 m/s; and it rises with the grip's speed (448, 501,
+   531 MPa at 10, 20, 40 m/s, cell 1.5 um), as the metal's strength does. Source A names bond strength as an
+   aim (chapter 4) and prints no number.
 
    The loop in draw() is the method with a grip in it. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION

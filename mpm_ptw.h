@@ -168,7 +168,23 @@ typedef struct mpm_flow {
 struct mpm_material;
 
 /* A caller's flow stress: must not fall with rate or strain faster than the elastic slope 3 mu
-   rises, or the return is not unique (it still returns). A NaN stops the step with MPM_ERR_NAN. */
+   rises, or the return is not unique (it still returns). A NaN stops the step with MPM_ERR_NAN.
+   It is not asked at and above melting, where strength is zero. Zerilli and Armstrong's law for fcc
+   metals, c0 + c2 sqrt(eps) exp(-c3 T + c4 T ln rate), would be
+       typedef struct zerilli { mpm_real c0, c2, c3, c4; } zerilli;
+       static mpm_flow zerilli_flow(const void *context, const mpm_material *m, const mpm_material_state *s)
+       {
+           const zerilli *c = (const zerilli *)context;
+           mpm_real heat = s->temperature * (c->c4 * log(s->plastic_rate) - c->c3);
+           mpm_real hard = s->plastic_rate > 0 ? c->c2 * sqrt(s->plastic_strain) * exp(heat) : 0;
+           mpm_flow f;
+           f.stress = c->c0 + hard;
+           f.strain_slope = s->plastic_strain > 0 ? hard / (2 * s->plastic_strain) : 0;
+           f.rate_slope = hard * c->c4 * s->temperature;
+           return f;
+       }
+   and is chosen by material.strength = MPM_STRENGTH_USER, strength_fn = zerilli_flow and
+   strength_context = &its_numbers. Test: 11_update "user strength". */
 typedef mpm_flow (*mpm_strength_fn)(const void *context, const struct mpm_material *m,
                                     const mpm_material_state *s);
 
@@ -1548,8 +1564,9 @@ static const mpm__ptw_set_ptw mpm__ptw_sets_ptw[] = {
     /* [PTW]; shear modulus and melting [S]; 180.948 u */
     {"ta", 0.02, 0, 0.012, 0.00325, 0.6, 4e-5, 0.01, 0.00125, 0.012, 0.4, 0.23,
      3.004712e-25, MPM_SHEAR_SCG, 0, 0, 0, MPM_MELT_SCG, 4340, 1.3},
-    /* [PTW]; the room temperature shear modulus of data sheets, no softening of it with
-       temperature; melting: solidus of 304; the atom is that of iron, 55.845 u */
+    /* [PTW], which prints G0 = 89.5 GPa at T = 0 with a fall towards melting that was not seen; instead
+       the room temperature shear modulus of data sheets, held constant; melting: solidus of 304; the
+       atom is that of iron, 55.845 u */
     {"304", 0.02, 10, 0.05, 0.0075, 0.3, 1e-3, 0.0069, 0.0015, 0.05, 0.46, 0.25,
      9.273280e-26, MPM_SHEAR_CONSTANT, 77e9, 0, 0, MPM_MELT_CONSTANT, 1673, 0}
 };

@@ -589,6 +589,48 @@ static mpm_flow awkward_strength(const void *context, const mpm_material *m, con
     return f;
 }
 
+/* Zerilli and Armstrong's law as the header prints it, with their numbers for OFHC copper [MPa, 1/s]. */
+typedef struct zerilli { mpm_real c0, c2, c3, c4; } zerilli;
+
+static mpm_flow zerilli_flow(const void *context, const mpm_material *m, const mpm_material_state *s)
+{
+    const zerilli *c = (const zerilli *)context;
+    double heat = (double)s->temperature * ((double)c->c4 * log((double)s->plastic_rate) - (double)c->c3);
+    double hard = s->plastic_rate > 0 ? (double)c->c2 * sqrt((double)s->plastic_strain) * exp(heat) : 0;
+    mpm_flow f;
+    (void)m;
+    f.stress = (mpm_real)((double)c->c0 + hard);
+    f.strain_slope = (mpm_real)(s->plastic_strain > 0 ? hard / (2 * (double)s->plastic_strain) : 0);
+    f.rate_slope = (mpm_real)(hard * (double)c->c4 * (double)s->temperature);
+    return f;
+}
+
+/* Sheared to a strain: the stress is the law's at the strain, rate and temperature it ended with. */
+static void test_zerilli(void)
+{
+    const zerilli copper = {MPM_R(65e6), MPM_R(890e6), MPM_R(0.0028), MPM_R(0.000115)};
+    mpm_material m = preset("cu", "jc", mpm_units_si());
+    mpm_fault f = {MPM_OK, "", 0, 0};
+    double want, heat;
+    points p;
+    int i;
+    m.strength = MPM_STRENGTH_USER;
+    m.strength_fn = zerilli_flow;
+    m.strength_context = &copper;
+    CHECK_EQUAL("Zerilli-Armstrong, check", mpm_material_check(&m, &f), MPM_OK);
+    m.heat_fraction = 0; /* the law is met at the temperature before a step's heat */
+    reset(&p, &m);
+    for (i = 0; i < 200; i++) {
+        strain(&p, 0, 0, 0, 0, 1e-3, 0, 0);
+        if (update(&p, &m, 0, 1, 1e-7, &f) < 0) break;
+    }
+    CHECK_EQUAL("Zerilli-Armstrong, steps", i, 200);
+    heat = (double)p.temperature[0] * (0.000115 * log((double)p.plastic_rate[0]) - 0.0028);
+    want = 65e6 + 890e6 * sqrt((double)p.plastic_strain[0]) * exp(heat);
+    CHECK_RELATIVE("Zerilli-Armstrong, stress", mises(&p, 0), want, MET);
+    CHECK_RELATIVE("Zerilli-Armstrong, strain", p.plastic_strain[0], 0.2 * 2 / sqrt(3), 0.02);
+}
+
 static void test_user_strength(void)
 {
     mpm_material m = preset("al", "ptw", mpm_units_si());
@@ -632,5 +674,6 @@ int main(void)
     test_units();
     test_faults();
     test_user_strength();
+    test_zerilli();
     return check_end();
 }

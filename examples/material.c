@@ -3,8 +3,9 @@
 
    Shows how to call the laws of mpm_ptw.h without a grid. Inputs and outputs are SI except where
    the key says MPa. --curve FILE writes the stress-strain curve up to --strain at that rate and
-   temperature as CSV, isothermal and adiabatic (plastic work heats, A 3.44). Expected: `material` alone prints flow_stress_MPa = 259.09 and
-   xidot_per_s = 9.714e12, the values of the aluminium of source A at strain 0.1, 1e6 /s, 300 K. */
+   temperature as CSV, isothermal and adiabatic (plastic work heats, A 3.44). Expected: `material`
+   alone prints flow_stress_MPa = 259.09 and xidot_per_s = 9.714e12, the values of the aluminium of
+   source A at strain 0.1, 1e6 /s, 300 K. */
 #define MPM_IMPLEMENTATION
 #include "mpm_ptw.h"
 #include "mpm_io.h"

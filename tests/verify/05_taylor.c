@@ -69,8 +69,8 @@ static void benchmark(void)
     c = bar(0.4, 0.2);
     c.functions = "linear";
     benchmark_row("axisymmetric, linear functions, cell 0.4 mm", &c, 1);
-    verify_remark("Published: length 21.42 - 21.43 mm, foot radius 7.12 - 7.23 mm; the rows take the middle of "
-                  "each range and 1 %. The coarsest cells (four on the radius) are there for the trend. Lengths are "
+    verify_remark("Published: length 21.42 - 21.43 mm, foot radius 7.12 - 7.23 mm; the rows take the middle of each "
+                  "range and 1 %. The coarsest cells (four on the radius) are there for the trend. Lengths are "
                   "those of the surface, half a spacing of the undeformed bar beyond the outermost points.");
 }
 
@@ -93,19 +93,21 @@ static void contact(void)
         snprintf(line, sizeof line, "wall in contact, dt factor %g: energy unaccounted", factor[i]);
         verify_near(line, "conservation", 0, r.energy_unaccounted, 2e-3);
     }
-    verify_remark("The benchmark's foot stays on the wall. On a wall that only pushes the rim curls up and the bar comes "
-                  "out wider than published. Both were checked with a separate axisymmetric program of four-node "
-                  "elements that move with the material (explicit, one integration point; not part of this library): on a "
-                  "held foot it gives length 21.456, 21.433, 21.422 and radius 7.176, 7.206, 7.216 mm with 8, 16, 32 "
-                  "elements on the radius; on a pushing wall 21.495, 21.474 and 7.303, 7.342 mm with 8 and 16, its rim 0.19 "
-                  "and 0.26 mm above the wall. The step matters to a wall in contact because nodes come to rest within one.");
+    verify_remark("The benchmark's foot stays on the wall. On a wall that only pushes the rim curls up and the bar "
+                  "comes out wider than published. Both were checked with a separate axisymmetric program of "
+                  "four-node elements that move with the material (explicit, one integration point; not part of "
+                  "this library): on a held foot it gives length 21.456, 21.433, 21.422 and radius 7.176, 7.206, "
+                  "7.216 mm with 8, 16, 32 elements on the radius; on a pushing wall 21.495, 21.474 and 7.303, "
+                  "7.342 mm with 8 and 16, its rim 0.19 and 0.26 mm above the wall. The step matters to a wall in "
+                  "contact because nodes come to rest within one.");
 }
 
 /* ---- the experiment ---------------------------------------------------------------------------- */
 
 static void experiment(void)
 {
-    static const char *const model[] = {"jc", "scg", "ptw"}, *const name[] = {"Johnson-Cook", "Steinberg-Guinan", "PTW"};
+    static const char *const model[] = {"jc", "scg", "ptw"};
+    static const char *const name[] = {"Johnson-Cook", "Steinberg-Guinan", "PTW"};
     const char *const source = "experiment, OFHC copper";
     int i;
     for (i = 0; i < 3; i++) {
@@ -130,20 +132,21 @@ static void experiment(void)
         snprintf(line, sizeof line, "%s: flow stress at strain 0.5, 1e4 /s, 400 K, MPa", name[i]);
         verify_measured(line, "-", (double)mpm_material_flow_stress(&m, &s));
     }
-    verify_remark("Length 23.47, diameter 7.62 mm, 210 m/s, 298 K; frictionless wall in contact, cell 0.4 mm. All three "
-                  "give the length within 3 %. The foot tells them apart: it is wider the softer the metal is at large "
-                  "strain. The Johnson-Cook set (first yield 90 MPa) comes within 5 %. The Steinberg-Guinan set is one of "
-                  "half-hard copper; at strain 0.5 it and the PTW set are a fifth stronger, and their feet come out 15 and "
-                  "17 % narrower. That is the sets', not the grid's: cells of 0.2 mm give "
-                  "15.097 and 8.058 mm (Johnson-Cook), 15.231 and 6.949 mm (PTW).");
+    verify_remark("Length 23.47, diameter 7.62 mm, 210 m/s, 298 K; frictionless wall in contact, cell 0.4 mm. All "
+                  "three give the length within 3 %. The foot tells them apart: it is wider the softer the metal is "
+                  "at large strain. The Johnson-Cook set (first yield 90 MPa) comes within 5 %. The "
+                  "Steinberg-Guinan set is one of half-hard copper; at strain 0.5 it and the PTW set are a fifth "
+                  "stronger, and their feet come out 15 and 17 % narrower. That is the sets', not the grid's: cells "
+                  "of 0.2 mm give 15.097 and 8.058 mm (Johnson-Cook), 15.231 and 6.949 mm (PTW).");
 }
 
 int main(void)
 {
     verify_begin("Taylor bar",
-                 "A metal cylinder hits a rigid wall end on: large plastic strains, a free surface, a wall. First the "
-                 "benchmark that codes compare on (copper, 32.4 x 6.4 mm, 227 m/s, E 117 GPa, nu 0.35, flow stress 400 + "
-                 "100 eps MPa, 80 us, GIMP), then an experiment on OFHC copper. What it does not show: fracture, friction.");
+                 "A metal cylinder hits a rigid wall end on: large plastic strains, a free surface, a wall. First "
+                 "the benchmark that codes compare on (copper, 32.4 x 6.4 mm, 227 m/s, E 117 GPa, nu 0.35, flow "
+                 "stress 400 + 100 eps MPa, 80 us, GIMP), then an experiment on OFHC copper. What it does not show: "
+                 "fracture, friction.");
     benchmark();
     contact();
     experiment();

@@ -27,8 +27,8 @@ static double stress_at(const mpm_material *m, const double *t)
     return (double)mpm_material_flow_stress(m, &s);
 }
 
-/* The largest change between neighbours of n steps along an axis, over the largest stress there, and changes against the
-   direction of the model: falls with strain and rate, rises with temperature. */
+/* The largest change between neighbours of n steps along an axis, over the largest stress there, and
+   changes against the direction of the model: falls with strain and rate, rises with temperature. */
 static double largest_change(const mpm_material *m, axis a, int n, long *wrong)
 {
     double worst = 0, t[3];
@@ -101,11 +101,11 @@ int main(void)
     int i, j, a;
     memset(ratio, 0, sizeof ratio);
     verify_begin("Strength",
-                 "Flow stress of every published Johnson-Cook, Steinberg-Guinan and Preston-Tonks-Wallace set of the "
-                 "library over strain 0 - 2, rates 1e-3 - 1e12 /s, temperatures to 1.3 T_m and densities 0.95 - 1.1 "
-                 "rho0, against the printed formulas, written apart in long double. Its direction: up with strain and "
-                 "rate, down with temperature, in steps of 1/1000 and 1/2000 of each axis on a 9 x 9 grid of the others. "
-                 "What it does not show: that a set describes its metal.");
+                 "Flow stress of every published Johnson-Cook, Steinberg-Guinan and Preston-Tonks-Wallace set of "
+                 "the library over strain 0 - 2, rates 1e-3 - 1e12 /s, temperatures to 1.3 T_m and densities 0.95 - "
+                 "1.1 rho0, against the printed formulas, written apart in long double. Its direction: up with "
+                 "strain and rate, down with temperature, in steps of 1/1000 and 1/2000 of each axis on a 9 x 9 "
+                 "grid of the others. What it does not show: that a set describes its metal.");
     for (j = 0; j < MODELS; j++)
         for (i = 0; i < mpm_material_preset_count(); i++) {
             mpm_material m;
@@ -119,8 +119,9 @@ int main(void)
             verify_range(line, "continuity", 0, 0.6, ratio[j][a]);
         }
     verify_remark("A jump would keep its size when steps are halved (ratio 1); a continuous law halves (0.5), or "
-                  "with a power m < 1 takes 2^-m (Johnson-Cook of Ti-6Al-4V above 298 K, m = 0.8: 0.57). Steinberg-Guinan does not depend on rate: 0. The laws have kinks, which are theirs: Johnson-Cook at "
-                  "1 /s and 298 K, Steinberg-Guinan at its largest strength, PTW where one branch of its maxima takes over. "
-                  "All drop to zero at melting, Steinberg-Guinan and PTW at once.");
+                  "with a power m < 1 takes 2^-m (Johnson-Cook of Ti-6Al-4V above 298 K, m = 0.8: 0.57). "
+                  "Steinberg-Guinan does not depend on rate: 0. The laws have kinks, which are theirs: Johnson-Cook "
+                  "at 1 /s and 298 K, Steinberg-Guinan at its largest strength, PTW where one branch of its maxima "
+                  "takes over. All drop to zero at melting, Steinberg-Guinan and PTW at once.");
     return verify_end();
 }

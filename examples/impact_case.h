@@ -292,48 +292,19 @@ typedef struct impact_result {
     double relative, filtered_relative;                /* rebound less that drift */
     double tangential;                                 /* mean v_x of the particle */
     double flattening;                                 /* 1 - height / height at the start */
-    double crater;                                     /* lowest point of the former upper face below it */
-    double contact_area, bonded_area;                  /* see impact_areas */
+    double crater;                                     /* see mpm_splat */
+    double contact_area, bonded_area;                  /* of the whole particle: see mpm_bond_measure */
     double ejected_fraction;                           /* of the particle's mass, faster than 60 m/s */
     double mass_error, momentum_error, energy_error;   /* relative; energy: kinetic + internal + absorbed */
     double energy_unaccounted;                         /* the same with contact and bond losses */
 } impact_result;
 
-/* Surface of the particle at the start: a spheroid of eccentricity e. */
-static inline double impact_surface(const impact_case *c)
+/* Of how many copies of the model the whole consists: mirror planes at the axis. */
+static inline int impact_copies(const impact *s)
 {
-    const double pi = 3.14159265358979323846, a = impact_half_width(c), h = impact_half_height(c);
-    const double e = sqrt(fabs(1 - (h < a ? h * h / (a * a) : a * a / (h * h))));
-    if (e < 1e-6) return 4 * pi * a * a;
-    if (h < a) return 2 * pi * a * a * (1 + (1 - e * e) / e * atanh(e));
-    return 2 * pi * a * a * (1 + h / (a * e) * asin(e));
-}
-
-/* Contacted (D > 0) and bonded (D >= 1) area of the particle: the share of its surface points, by
-   mass, times its surface at the start. Without bonding D stays 0, and so do the areas. */
-static inline void impact_areas(const impact *s, const impact_case *c, impact_result *r)
-{
-    const mpm_body *b = &s->world.body[IMPACT_PARTICLE];
-    const mpm_points *p = &s->world.points;
-    double mass = 0;
-    int32_t i;
-    for (i = b->first; i < b->first + b->count; i++)
-        if (p->flags[i] & MPM_SURFACE) mass += (double)p->mass[i];
-    if (!(mass > 0)) return;
-    r->contact_area = impact_surface(c) * r->particle_bond.contacted_mass / mass;
-    r->bonded_area = impact_surface(c) * r->particle_bond.bonded_mass / mass;
-}
-
-/* How deep the lowest point of the substrate's former upper face now lies, um. */
-static inline double impact_crater(const impact *s, const impact_case *c)
-{
-    const mpm_body *b = &s->world.body[IMPACT_SUBSTRATE];
-    const mpm_points *p = &s->world.points;
-    double lowest = 0;
-    int32_t i;
-    for (i = b->first; i < b->first + b->active; i++)
-        if ((p->flags[i] & MPM_TOP) && (double)p->x[2][i] < lowest) lowest = (double)p->x[2][i];
-    return -lowest - c->spacing / 2;
+    const mpm_side *side = s->world.desc.side;
+    if (s->world.desc.geometry != MPM_3D) return 1;
+    return (side[0] == MPM_SIDE_SYMMETRY ? 2 : 1) * (side[2] == MPM_SIDE_SYMMETRY ? 2 : 1);
 }
 
 static inline impact_result impact_measure(const impact *s, const impact_case *c)
@@ -356,8 +327,9 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
     r.filtered_relative = r.rebound.filtered - r.substrate_drift;
     r.tangential = w->desc.side[0] == MPM_SIDE_SYMMETRY ? 0 : r.particle.momentum[0] / r.particle.mass;
     r.flattening = 1 - (r.particle.high[2] - r.particle.low[2] + c->spacing) / (2 * impact_half_height(c));
-    r.crater = impact_crater(s, c);
-    impact_areas(s, c, &r);
+    r.crater = mpm_splat_measure(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE, MPM_R(1e15)).crater; /* deep points move */
+    r.contact_area = r.particle_bond.contacted_area * impact_copies(s);
+    r.bonded_area = r.particle_bond.bonded_area * impact_copies(s);
     r.ejected_fraction = r.rebound.ejected_mass / r.particle.mass;
     energy = s->start.kinetic + s->start.internal;
     r.mass_error = (r.all.mass - s->start.mass) / s->start.mass;

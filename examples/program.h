@@ -14,7 +14,7 @@ static inline int complain(const char *message)
 /* "what: the fault in words" */
 static inline int report(const mpm_fault *fault, const char *what)
 {
-    char text[256], line[400];
+    char text[256], line[1400];
     mpm_io_fault_text(text, sizeof text, fault);
     snprintf(line, sizeof line, "%s: %s", what, text);
     return complain(line);

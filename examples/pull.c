@@ -32,13 +32,6 @@ typedef struct curve {
     size_t count, room;
 } curve;
 
-/* Copies of the model in the whole: 4 quarters, 2 halves. */
-static double copies(const mpm_world *w)
-{
-    if (w->desc.geometry != MPM_3D) return 1;
-    return (w->desc.side[0] == MPM_SIDE_SYMMETRY ? 2 : 1) * (w->desc.side[2] == MPM_SIDE_SYMMETRY ? 2 : 1);
-}
-
 static int check(const pull_case *c, char *m, size_t n)
 {
     return case_wants(c->velocity > 0 && c->velocity < 1e4, "pull-velocity", c->velocity, "must be > 0 m/s", m, n) &&
@@ -72,7 +65,7 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
 {
     mpm_world *w = &s->world;
     const mpm_real dt = s->dt;
-    const double whole = copies(w);
+    const int whole = impact_copies(s);
     mpm_interface met;
     do {
         mpm_status status = mpm_locate(w);
@@ -157,7 +150,7 @@ static int write_picture(const impact *s, const impact_case *c, const pull_case 
 static int write_summary(const impact *s, const pull_case *o, const impact_result *r, const mpm_interface *met,
                          const mpm_pull *p, const option *options, int n)
 {
-    const double whole = copies(&s->world);
+    const int whole = impact_copies(s);
     char path[1024];
     mpm_fault fault;
     mpm_io_json j;
@@ -211,8 +204,8 @@ static int run(impact *s, const impact_case *ic, const pull_case *o, curve *c, c
     if (!o->quiet)
         printf("strength %.4g MPa: %.4g uN over %.4g um2 of contact (%.4g um2 at bonded nodes)\n"
                "PBCP %.3g %%, work %.4g pJ over %.3g um; see %s/summary.json, pull.csv, pull.png\n",
-               p.peak_stress, p.peak_force * copies(&s->world), met.area * copies(&s->world),
-               met.bonded_area * copies(&s->world), r.bond.pbcp, p.work * copies(&s->world), p.separation, o->folder);
+               p.peak_stress, p.peak_force * impact_copies(s), met.area * impact_copies(s),
+               met.bonded_area * impact_copies(s), r.bond.pbcp, p.work * impact_copies(s), p.separation, o->folder);
     return 1;
 }
 

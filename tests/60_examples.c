@@ -120,7 +120,6 @@ static void scene(void)
     ball = mpm_body_totals(&s.world, IMPACT_PARTICLE).mass;
     CHECK_RELATIVE("mass of a quarter", ball, 2.7e-3 * 3.14159265358979 / 24 * 14 * 14 * 14, 0.01);
     mpm_free(&s.world);
-    CHECK_RELATIVE("surface of a sphere", impact_surface(&c), 3.14159265358979 * 14 * 14, 1e-12);
     c.shape = "ellipsoid";
     c.aspect = 0.5;
     CHECK_TRUE("an ellipsoid", impact_begin(&s, &c, message, sizeof message));
@@ -128,10 +127,6 @@ static void scene(void)
     CHECK_RELATIVE("half as high as wide", impact_half_height(&c) / impact_half_width(&c), 0.5, 1e-12);
     CHECK_NEAR("resting on the surface", mpm_body_totals(&s.world, IMPACT_PARTICLE).low[2], 0, 0.35);
     mpm_free(&s.world);
-    c.diameter = 2; /* expected values by quadrature */
-    CHECK_RELATIVE("surface, oblate", impact_surface(&c), 13.765756, 1e-4);
-    c.aspect = 2;
-    CHECK_RELATIVE("surface, prolate", impact_surface(&c), 13.530566, 1e-4);
     c = impact_case_default();
     c.spacing = 0.75;
     c.time = 1;

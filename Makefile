@@ -5,6 +5,7 @@
 #   make bench      speed, as ratios measured in one run
 #   make impacts     the impacts of docs/reproduction.md: bonded, unbonded, whole model (4 minutes)
 #   make spray-study   source B's results again: a quarter of an hour, resumable; BUDGET=quick: less
+#   make reproduction   source A's results again: half an hour; BUDGET=desk, full: more; resumable
 #   make verify     the verification ladder again: writes docs/verification.md; resumable, `make -j2 verify`
 #   make clean
 
@@ -70,6 +71,11 @@ impacts: build/impact
 	@grep -HE '"(pbcp_percent|v_rest_(mean|filtered)_m_s|eps_mean|temperature_max_K|energy_(error|unaccounted))"' \
 		build/bonded/summary.json build/unbonded/summary.json build/whole/summary.json
 
+# Writes its part of docs/reproduction.md, and docs/data; finished runs are kept in build/reproduction-out.
+reproduction: BUDGET = quick
+reproduction: build/reproduction
+	build/reproduction --budget $(BUDGET)
+
 # Writes docs/spray.md and docs/data; finished runs are kept in build/spray_study.log.
 BUDGET ?= full
 spray-study: build/spray_study
@@ -81,4 +87,4 @@ clean:
 # sections are programs first: keep them
 .PRECIOUS: build/verify/%
 
-.PHONY: all run test verify bench impacts spray-study clean
+.PHONY: all run test verify bench impacts spray-study reproduction clean

@@ -31,6 +31,53 @@ static inline particles_case particles_default(const char *symmetry, const char 
     return q;
 }
 
+/* The next number in [0, 1): splitmix64. */
+static inline double particles_draw(uint64_t *state)
+{
+    uint64_t z = (*state += UINT64_C(0x9e3779b97f4a7c15));
+    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
+    return (double)((z ^ (z >> 31)) >> 11) / 9007199254740992.0;
+}
+
+/* The height in which that many particles fill a fifth of a cylinder of width `spread`. */
+static inline double particles_height(const particles_case *q, double spread)
+{
+    const double d = q->base.diameter;
+    return (double)q->count * d * d * d / 6 / 0.2 / (spread * spread / 4);
+}
+
+/* Centres in a cylinder over the substrate, at least a diameter and a cell apart, the lowest on the
+   substrate. Sets the substrate's width (spread and a diameter) and the time (the fall and 40 ns) where they
+   are 0. Returns 1, or 0 when there is no room. */
+static inline int particles_place(particles_case *q, double spread, double height, long seed)
+{
+    const double apart = q->base.diameter + q->base.cell, pi = 3.14159265358979323846;
+    uint64_t state = (uint64_t)seed;
+    double least = HUGE_VAL;
+    long k, other, tries = 0;
+    for (k = 0; k < q->count; k++) {
+        double *x = q->center[k], r, phi, d2 = HUGE_VAL;
+        do {
+            if (tries++ > 200000) return 0;
+            r = spread / 2 * sqrt(particles_draw(&state));
+            phi = 2 * pi * particles_draw(&state);
+            x[0] = r * cos(phi);
+            x[1] = r * sin(phi);
+            x[2] = height * particles_draw(&state);
+            for (other = 0, d2 = HUGE_VAL; other < k; other++) {
+                const double *y = q->center[other];
+                d2 = fmin(d2, (x[0] - y[0]) * (x[0] - y[0]) + (x[1] - y[1]) * (x[1] - y[1]) + (x[2] - y[2]) * (x[2] - y[2]));
+            }
+        } while (d2 < apart * apart);
+        least = fmin(least, x[2]);
+    }
+    for (k = 0; k < q->count; k++) q->center[k][2] += q->base.diameter / 2 - least;
+    if (!(q->base.substrate_diameter > 0)) q->base.substrate_diameter = spread + q->base.diameter;
+    if (!(q->base.time > 0)) q->base.time = 1e3 * height / q->base.velocity + 40;
+    return 1;
+}
+
 /* Builds the scene. Returns 1, or 0 with a message; then nothing is left to free. The world points into
    *s: do not copy or move it. */
 static inline int particles_begin(impact *s, const particles_case *q, char *message, size_t n)

@@ -81,6 +81,9 @@ enum {
     STUDY_WORK,       /* mean plastic energy density of the particle, MPa */
     STUDY_T_MAX,      /* K */
     STUDY_EJECTED,    /* share of the particle's mass faster than 60 m/s */
+    STUDY_JET,        /* share of the particle's mass further than 1.5 initial radii from its axis */
+    STUDY_R_CONTACT,  /* median distance from the axis of the particle's points with D > 0, um: half their mass lies within */
+    STUDY_R_BONDED,   /* ... with D >= 1; 0 without any */
     STUDY_UNACCOUNTED, /* energy, of the initial */
     STUDY_END,        /* ns simulated */
     STUDY_STEPS,
@@ -92,7 +95,7 @@ enum {
 static const char *const study_name[STUDY_VALUES] = {
     "pbcp_percent", "abp", "contacted_points", "v_rest_m_s", "v_mean_m_s", "v_late_m_s", "substrate_drift_m_s",
     "held_pairs", "held_late_share", "flattening", "eps_mean", "plastic_energy_density_MPa", "temperature_max_K",
-    "ejected_mass_share", "energy_unaccounted", "end_ns", "steps", "points", "cpu_s"};
+    "ejected_mass_share", "jet_mass_share", "contact_radius_um", "bonded_radius_um", "energy_unaccounted", "end_ns", "steps", "points", "cpu_s"};
 
 /* A study under way: where finished runs are kept, and what the progress line needs. */
 typedef struct study {
@@ -155,6 +158,40 @@ static inline void study_distance(const mpm_world *w, double *height, double *ve
     *velocity = sum[0][2] / sum[0][0] - sum[1][2] / sum[1][0];
 }
 
+static inline double study_radius(const mpm_world *w, int32_t i)
+{
+    const double x = (double)w->points.x[0][i], y = (double)w->points.x[1][i];
+    return w->desc.geometry == MPM_3D ? hypot(x, y) : x;
+}
+
+/* Mass of the particle within a distance of the axis; with a floor > 0 only of surface points whose D is at
+   least that. */
+static inline double study_within(const mpm_world *w, double radius, double floor)
+{
+    const mpm_body *b = &w->body[IMPACT_PARTICLE];
+    const mpm_points *p = &w->points;
+    double mass = 0;
+    int32_t i;
+    for (i = b->first; i < b->first + b->count; i++)
+        if (study_radius(w, i) <= radius && (!(floor > 0) || ((p->flags[i] & MPM_SURFACE) && (double)p->bond[i] >= floor)))
+            mass += (double)p->mass[i];
+    return mass;
+}
+
+/* The radius within which half of the mass of such points lies; a median, since what is ejected is far. */
+static inline double study_median_radius(const mpm_world *w, double floor)
+{
+    const double half = study_within(w, HUGE_VAL, floor) / 2;
+    double low = 0, high = 1e6;
+    int k;
+    if (!(half > 0)) return 0;
+    for (k = 0; k < 50; k++) {
+        if (study_within(w, (low + high) / 2, floor) < half) low = (low + high) / 2;
+        else high = (low + high) / 2;
+    }
+    return high;
+}
+
 /* Runs a case to its end. With s->early it ends as soon as the outcome is decided: in a twentieth of
    the time no pair was held, and the particle leaves the substrate at more than 5 m/s, all points or
    only those up to 60 m/s, with a mean that changed by less than 1 % in that time. Returns 1, or 0
@@ -209,6 +246,9 @@ static inline int study_run(study *s, const impact_case *c, double *value, char 
     value[STUDY_WORK] = r.particle.plastic_work_mean;
     value[STUDY_T_MAX] = r.all.temperature_max;
     value[STUDY_EJECTED] = r.ejected_fraction;
+    value[STUDY_JET] = 1 - study_within(&run.world, 0.75 * c->diameter, 0) / r.particle.mass;
+    value[STUDY_R_CONTACT] = study_median_radius(&run.world, 1e-12);
+    value[STUDY_R_BONDED] = study_median_radius(&run.world, 1);
     value[STUDY_UNACCOUNTED] = r.energy_unaccounted;
     value[STUDY_END] = (double)run.world.time * 1e3;
     value[STUDY_STEPS] = (double)run.world.steps;

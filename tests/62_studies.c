@@ -168,6 +168,32 @@ static void particles(void)
     refused("many_particles --velocity 0", "velocity 0");
 }
 
+/* The page keeps what others wrote; a part that was cut off goes on. */
+static void reproduction(void)
+{
+    const char *site = "reproduction --quiet --only site --limit 1 --out " FOLDER "/again --data " FOLDER "/data --page " FOLDER "/page.md";
+    char text[4000];
+    FILE *f = fopen(FOLDER "/page.md", "wb");
+    int made;
+    if (f) {
+        fputs("before\n<!-- made by build/reproduction: begin -->\nold\n<!-- made by build/reproduction: end -->\nbehind\n", f);
+        fclose(f);
+    }
+    CHECK_EQUAL("a reproduction stopped after one run", run(site), 1);
+    CHECK_TRUE("... leaves the page", contents(FOLDER "/page.md", text, sizeof text) && strstr(text, "\nold\n"));
+    run(site);
+    system("ls " FOLDER "/again/runs | wc -l >" FOLDER ".out");
+    contents(FOLDER ".out", text, sizeof text);
+    made = (int)strtol(text, NULL, 10);
+    CHECK_EQUAL("the next one makes the second run", made, 2);
+    CHECK_EQUAL("no part at all", run("reproduction --quiet --only nothing --data " FOLDER "/data --page " FOLDER "/page.md"), 0);
+    contents(FOLDER "/page.md", text, sizeof text);
+    CHECK_TRUE("... replaces what stood between the marks", !strstr(text, "\nold\n") && strstr(text, "BUDGET=quick"));
+    CHECK_TRUE("... and keeps the rest", !strncmp(text, "before\n<!--", 11) && strstr(text, "end -->\nbehind\n"));
+    refused("reproduction --budget lavish", "lavish");
+    refused("reproduction --only nothing --data /proc/none", "/proc/none");
+}
+
 /* Runs are known by their options: a member without one would mix different cases up. */
 static void members(void)
 {
@@ -188,5 +214,6 @@ int main(void)
     critical();
     calibration();
     particles();
+    reproduction();
     return check_end();
 }

@@ -190,7 +190,7 @@ static void rod_rows(mpm_shape_function shape, int cells)
 
 int main(void)
 {
-    verify_begin("1. An elastic bar",
+    verify_begin("An elastic bar",
                  "A bar (L 25, E 100, rho 1: c = 10) held at one end, free at the other, starts with v0 sin(pi x / 2\n"
                  "L) and swings with omega = pi c / 2 L; its mean velocity is (2/pi) v0 cos(omega t). Stress E\n"
                  "(rho0/rho - 1) makes the wave equation exact at any amplitude. Two points per cell and direction,\n"

@@ -128,7 +128,7 @@ int main(void)
     collision r[ALL][GRIDS], finest;
     double momentum = 0;
     int i, g;
-    verify_begin("2. Two elastic disks",
+    verify_begin("Two elastic disks",
                  "Two disks (R 0.2, E 1000, nu 0.3, rho 1000) cross a unit square along its diagonal, each at 0.1\n"
                  "sqrt(2), and bounce off each other (Sulsky, Chen and Schreyer 1994; plane strain, frictionless, 2\n"
                  "x 2 points per cell). They touch at t = 1.086. Contact of nodes is the library's default, contact\n"

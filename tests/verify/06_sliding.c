@@ -237,7 +237,7 @@ static void spheres(void)
 
 int main(void)
 {
-    verify_begin("6. Sliding, rolling, Hertz",
+    verify_begin("Sliding, rolling, Hertz",
                  "An elastic block (2 x 1, ten cells high), disk or ball (R 0.5) on a plane inclined by 30 degrees,\n"
                  "GIMP; the grid follows the plane, gravity leans and rises over 0.3 s so that the elastic body does\n"
                  "not start to bounce. The ground is a rigid wall (a side of the grid) or an elastic slab, met\n"

@@ -166,6 +166,10 @@ static int write_summary(const impact *s, const impact_case *c, const output *o,
     mpm_io_json_number(&j, "momentum_error", r.momentum_error);
     mpm_io_json_number(&j, "energy_error", r.energy_error);
     mpm_io_json_number(&j, "energy_unaccounted", r.energy_unaccounted);
+    mpm_io_json_number(&j, "energy_kinetic_fraction", r.all.kinetic / s->start.kinetic);
+    mpm_io_json_number(&j, "energy_plastic_fraction", r.all.plastic / s->start.kinetic);
+    mpm_io_json_number(&j, "energy_elastic_fraction",
+                       (r.all.internal - s->start.internal - r.all.plastic) / s->start.kinetic);
     mpm_io_json_number(&j, "energy_absorbed_fraction", w->ledger.absorbed / s->start.kinetic);
     mpm_io_json_number(&j, "energy_contact_fraction", w->ledger.contact / s->start.kinetic);
     mpm_io_json_number(&j, "energy_bond_fraction", w->ledger.bond / s->start.kinetic);
@@ -204,6 +208,9 @@ static void print_table(const impact *s, const impact_case *c, double cpu)
     printf("  area of the particle, contact   %10.3f um2, bonded %.3f um2\n", r.contact_area, r.bonded_area);
     printf("  highest temperature             %10.1f K\n", r.all.temperature_max);
     printf("  points ejected, retired         %10ld, %ld of %ld\n", r.rebound.ejected, w->retired, r.all.points);
+    printf("  energy: kinetic                 %10.3f %%    plastic work %.3f %%, elastic %.3f %%\n",
+           100 * r.all.kinetic / s->start.kinetic, 100 * r.all.plastic / s->start.kinetic,
+           100 * (r.all.internal - s->start.internal - r.all.plastic) / s->start.kinetic);
     printf("  energy: absorbed by dampers     %10.3f %%    lost in contact %.3f %%, in the bond %.3f %%\n",
            100 * w->ledger.absorbed / s->start.kinetic, 100 * w->ledger.contact / s->start.kinetic,
            100 * w->ledger.bond / s->start.kinetic);
@@ -288,7 +295,8 @@ int main(int argc, char **argv)
     impact s;
     double cpu = 0;
     int parsed, ok;
-    option_add(options, &n, "frames", OPTION_LONG, &o.frames, "pictures and ParaView files, evenly in time, both ends included");
+    option_add(options, &n, "frames", OPTION_LONG, &o.frames,
+               "pictures and ParaView files, evenly in time, both ends included");
     option_add(options, &n, "out", OPTION_TEXT, &o.folder, "output folder");
     option_add(options, &n, "quiet", OPTION_FLAG, &o.quiet, "no progress line, no table");
     parsed = options_parse(argc, argv, about, options, n);

@@ -333,7 +333,7 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
     r.ejected_fraction = r.rebound.ejected_mass / r.particle.mass;
     energy = s->start.kinetic + s->start.internal;
     r.mass_error = (r.all.mass - s->start.mass) / s->start.mass;
-    for (a = 0; a < 3; a++) {
+    for (a = w->desc.geometry == MPM_AXISYMMETRIC ? 2 : 0; a < 3; a++) { /* hoop stress makes radial momentum */
         error = fmax(error, fabs(r.all.momentum[a] - s->start.momentum[a] - l->impulse[a]));
         momentum = hypot(momentum, s->start.momentum[a]);
     }

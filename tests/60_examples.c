@@ -153,6 +153,13 @@ int main(void)
     CHECK_RELATIVE("pbcp", number_in(q, "pbcp_percent") + 1, number_in(f, "pbcp_percent") + 1, 1e-6);
     CHECK_NEAR("mass error", number_in(q, "mass_error"), 0, 0);
     CHECK_NEAR("momentum error", number_in(q, "momentum_error"), 0, 1e-12);
+    CHECK_NEAR("kinetic, plastic, elastic, absorbed, contact, bond: all of the energy",
+               number_in(q, "energy_kinetic_fraction") + number_in(q, "energy_plastic_fraction") +
+                   number_in(q, "energy_elastic_fraction") + number_in(q, "energy_absorbed_fraction") +
+                   number_in(q, "energy_contact_fraction") + number_in(q, "energy_bond_fraction"),
+               1 + number_in(q, "energy_unaccounted"), 1e-9);
+    CHECK_EQUAL("a short impact, rings", run("--time 2 --geometry axisymmetric --out build/tests/rings"), 0);
+    CHECK_NEAR("... momentum error along the axis", number_in("build/tests/rings/summary.json", "momentum_error"), 0, 1e-12);
     CHECK_NEAR("energy unaccounted", number_in(q, "energy_unaccounted"), 0, 0.03);
     oblique();
     metals();

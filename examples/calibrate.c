@@ -73,6 +73,7 @@ static int write_summary(const calibration *q, const calibration_result *r, cons
     snprintf(path, sizeof path, "%s/summary.json", s->folder);
     mpm_io_json_begin(&j, path, fault);
     mpm_io_json_integer(&j, "crossings", r->points);
+    mpm_io_json_bool(&j, "same_boundary", r->same);
     for (k = 0; k < r->points; k++) {
         snprintf(name, sizeof name, "crossing_%d_gc_J_m2", k + 1);
         mpm_io_json_number(&j, name, r->point[k][0]);
@@ -115,7 +116,8 @@ static void print_result(const calibration *q, const calibration_result *r, cons
     }
     for (k = 0; k < r->points; k++)
         printf("  the boundaries cross at G_c %.6g J/m2, Gdot_c %.4g J/m2/us\n", r->point[k][0], r->point[k][1]);
-    if (!r->points) printf("  the boundaries do not cross in this range\n");
+    if (r->same) printf("  the two sizes have the same classes: one boundary\n");
+    else if (!r->points) printf("  the boundaries do not cross in this range\n");
     printf("  %s/tasks.csv, classes.png, summary.json\n", s->folder);
 }
 

@@ -172,6 +172,7 @@ typedef struct calibration_result {
     calibration_side side[2];
     double point[4][2];  /* crossings: G_c, Gdot_c */
     int points;
+    int same;            /* 1: both sizes have the same class everywhere, and one boundary: no crossing is named */
 } calibration_result;
 
 /* Fits both sizes and crosses their boundaries. */
@@ -200,7 +201,8 @@ static inline void calibration_collect(const calibration *q, const study *s, cal
     low[1] = calibration_x(q, q->gdot[0]);
     high[0] = calibration_x(q, q->gc[1]);
     high[1] = calibration_x(q, q->gdot[1]);
-    if (r->side[0].status >= 0 && r->side[1].status >= 0)
+    r->same = !memcmp(r->side[0].map.bonds, r->side[1].map.bonds, (size_t)calibration_nodes(q));
+    if (r->side[0].status >= 0 && r->side[1].status >= 0 && !r->same)
         r->points = mpm_bond_logistic_cross(&r->side[0].fit, &r->side[1].fit, low, high, r->point);
     for (k = 0; k < r->points; k++)
         for (size = 0; size < 2; size++) r->point[k][size] = calibration_from(q, r->point[k][size]);

@@ -246,7 +246,7 @@ static inline int study_run(study *s, const impact_case *c, double *value, char 
     value[STUDY_WORK] = r.particle.plastic_work_mean;
     value[STUDY_T_MAX] = r.all.temperature_max;
     value[STUDY_EJECTED] = r.ejected_fraction;
-    value[STUDY_JET] = 1 - study_within(&run.world, 0.75 * c->diameter, 0) / r.particle.mass;
+    value[STUDY_JET] = fmax(0, 1 - study_within(&run.world, 0.75 * c->diameter, 0) / r.particle.mass);
     value[STUDY_R_CONTACT] = study_median_radius(&run.world, 1e-12);
     value[STUDY_R_BONDED] = study_median_radius(&run.world, 1);
     value[STUDY_UNACCOUNTED] = r.energy_unaccounted;

@@ -104,7 +104,7 @@ static void critical(void)
 
 static void calibration(void)
 {
-    const char *sweep = "calibrate " COARSE "--time 20 --columns 6 --rows 5 --diameter-2 16 --gc-low 200 --gc-high 4000 "
+    const char *sweep = "calibrate " COARSE "--time 12 --columns 6 --rows 5 --diameter-2 16 --gc-low 200 --gc-high 4000 "
                         "--pbcp-1 10 --pbcp-2 10 --restitution-1 1 --restitution-2 1 --quiet --out " FOLDER "/calibrate ";
     const char *summary = FOLDER "/calibrate/summary.json";
     char command[700];

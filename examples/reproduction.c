@@ -452,15 +452,18 @@ static int calibrations(work *w)
     const int count = w->budget == QUICK ? 1 : w->budget == DESK ? 2 : 9;
     char path[MPM_IO_PATH], name[60], points[200];
     int g, r, k, status;
+    long node;
     w->s.early = 1;
     say(w, "### A-cal: calibration\n\n14 um at 810 m/s and 30 um at 770 m/s, axisymmetric, one grid position, runs where the class changes. Source "
            "A: G_c 1503.74 J/m2 and 2.271 (read as e5 J/(m2 us)) at 0.7/0.175, nearly the same on all grids. Rule \"thesis\": PBCP and "
            "restitution tolerances of its Table 5.2 for the grid.\n\n| cell/spacing, um | rule | runs | bonded, 14 and 30 um | on the wrong side | "
-           "crossings: G_c, Gdot_c |\n|---|---|---|---|---|---|\n");
+           "crossings: G_c, Gdot_c | "
+           "pairs run at both: only 14 um bonds, only 30 um |\n|---|---|---|---|---|---|---|\n");
     for (g = 0; g < count; g++)
         for (r = 0; r < 2; r++) {
             calibration q = calibration_default();
             size_t at = 0;
+            long only[2] = {0, 0};
             q.base.cell = grids[g].cell;
             q.base.spacing = grids[g].spacing;
             q.rule = rules[r];
@@ -473,9 +476,13 @@ static int calibrations(work *w)
             snprintf(points, sizeof points, "none");
             for (k = 0; k < result.points && at < sizeof points; k++)
                 at += (size_t)snprintf(points + at, sizeof points - at, "%s%.0f, %.3g", k ? "; " : "", result.point[k][0], result.point[k][1]);
-            say(w, "| %.3g/%.3g | %s | %ld | %ld, %ld | %ld, %ld | [%s](data/%s) |\n", grids[g].cell, grids[g].spacing, rules[r],
+            for (node = 0; node < calibration_nodes(&q); node++)
+                for (k = 0; k < 2; k++)
+                    only[k] += result.side[k].map.bonds[node] == 1 && result.side[1 - k].map.bonds[node] == 0;
+            say(w, "| %.3g/%.3g | %s | %ld | %ld, %ld | %ld, %ld | [%s](data/%s) | %ld, %ld |\n", grids[g].cell, grids[g].spacing, rules[r],
                 result.side[0].tests + result.side[1].tests, result.side[0].bonded, result.side[1].bonded,
-                result.side[0].status >= 0 ? result.side[0].fit.wrong : 0, result.side[1].status >= 0 ? result.side[1].fit.wrong : 0, points, name);
+                result.side[0].status >= 0 ? result.side[0].fit.wrong : 0, result.side[1].status >= 0 ? result.side[1].fit.wrong : 0, points, name, only[0],
+                only[1]);
         }
     say(w, "\n");
     return 1;

@@ -4,26 +4,8 @@
 #define MPM_IMPLEMENTATION
 #include "impact_case.h"
 #include "check.h"
+#include "files.h"
 
-#include <stdlib.h>
-#include <string.h>
-
-/* The number behind "key": in a JSON file; -1e300 if there is none. */
-static double number_in(const char *path, const char *key)
-{
-    static char text[20000];
-    FILE *f = fopen(path, "rb");
-    char quoted[64];
-    const char *at;
-    size_t n;
-    if (!f) return -1e300;
-    n = fread(text, 1, sizeof text - 1, f);
-    fclose(f);
-    text[n] = 0;
-    snprintf(quoted, sizeof quoted, "\"%s\":", key);
-    at = strstr(text, quoted);
-    return at ? strtod(at + strlen(quoted), NULL) : -1e300;
-}
 
 static int run(const char *options)
 {
@@ -36,19 +18,11 @@ static int run(const char *options)
 static void refused(const char *options, const char *value)
 {
     char line[200], text[500];
-    size_t n = 0;
-    FILE *f;
     snprintf(line, sizeof line, "refused: impact %s", options);
     remove("build/tests/bad/summary.json");
     snprintf(text, sizeof text, "%s --out build/tests/bad", options);
     CHECK_TRUE(line, run(text) != 0);
-    f = fopen("build/tests/impact.err", "rb");
-    if (f) {
-        n = fread(text, 1, sizeof text - 1, f);
-        fclose(f);
-    }
-    text[n] = 0;
-    CHECK_TRUE("... with a message naming the value", strstr(text, value) != NULL);
+    CHECK_TRUE("... with a message naming the value", strstr(text_of("build/tests/impact.err"), value) != NULL);
     CHECK_TRUE("... and no summary", number_in("build/tests/bad/summary.json", "steps") < -1e299);
 }
 

@@ -4,23 +4,7 @@
 #define MPM_IMPLEMENTATION
 #include "taylor_case.h"
 #include "check.h"
-
-/* The number behind "key": in a JSON file; -1e300 if there is none. */
-static double number_in(const char *path, const char *key)
-{
-    static char text[20000];
-    FILE *f = fopen(path, "rb");
-    char quoted[64];
-    const char *at;
-    size_t n;
-    if (!f) return -1e300;
-    n = fread(text, 1, sizeof text - 1, f);
-    fclose(f);
-    text[n] = 0;
-    snprintf(quoted, sizeof quoted, "\"%s\":", key);
-    at = strstr(text, quoted);
-    return at ? strtod(at + strlen(quoted), NULL) : -1e300;
-}
+#include "files.h"
 
 static int run(const char *options)
 {
@@ -33,21 +17,13 @@ static int run(const char *options)
 /* Option and value must be in the message, and the folder must not be made. */
 static void refused(const char *option, const char *value)
 {
-    char line[300], text[500];
-    size_t n = 0;
-    FILE *f;
+    char line[300];
+    const char *said;
     snprintf(line, sizeof line, "%s %s --out build/tests/taylor-bad", option, value);
     CHECK_TRUE(line, run(line) != 0);
-    f = fopen("build/tests/taylor.err", "rb");
-    if (f) {
-        n = fread(text, 1, sizeof text - 1, f);
-        fclose(f);
-    }
-    text[n] = 0;
-    CHECK_TRUE("... with a message naming option and value", strstr(text, option) && strstr(text, value));
-    f = fopen("build/tests/taylor-bad/summary.json", "rb");
-    CHECK_TRUE("... and nothing written", !f);
-    if (f) fclose(f);
+    said = text_of("build/tests/taylor.err");
+    CHECK_TRUE("... with a message naming option and value", strstr(said, option) && strstr(said, value));
+    CHECK_TRUE("... and nothing written", !*text_of("build/tests/taylor-bad/summary.json"));
 }
 
 static int lines_in(const char *path)

@@ -451,7 +451,8 @@ typedef struct mpm_world {
 
 /* ---- setting up ---------------------------------------------------------------------------- */
 
-/* Points that mpm_body_add will create for this shape (those cut off by symmetry planes excluded). */
+/* Points that mpm_body_add will create for this shape (those cut off by symmetry planes excluded). 0 for a
+   shape or spacing that is not positive, or when the box around the shape would hold 2^31 of them. */
 MPM_API int32_t mpm_shape_count(const mpm_desc *d, const mpm_shape *s, mpm_real spacing);
 
 /* Checks a description. On failure fills fault (may be NULL) with the field and its value.
@@ -720,8 +721,6 @@ MPM_API mpm_shape mpm_ellipsoid(mpm_real x, mpm_real y, mpm_real z, mpm_real a, 
     return s;
 }
 
-/* Shapes from centre and half axes, or from corners [length]. Nothing is checked here: mpm_body_add
-   refuses what is not positive or not finite. Test: 21_world. */
 MPM_API mpm_shape mpm_sphere(mpm_real x, mpm_real y, mpm_real z, mpm_real radius)
 {
     return mpm_ellipsoid(x, y, z, radius, radius, radius);
@@ -857,6 +856,7 @@ MPM_API int32_t mpm_shape_count(const mpm_desc *d, const mpm_shape *s, mpm_real 
     for (a = 0; a < 3; a++)
         if (!(s->half[a] > 0 && s->half[a] / spacing < 1e6)) return 0;
     l = mpm__lattice_begin(d, s, spacing);
+    if ((double)l.n[0] * l.n[1] * l.n[2] > 2147483647.0) return 0;
     while (mpm__lattice_next(&l, d, s, x)) n++;
     return n;
 }
@@ -883,22 +883,35 @@ MPM_API mpm_body_desc mpm_body_desc_default(void)
     return b;
 }
 
+/* The choices of a description: each one of its list. */
+static inline mpm_status mpm__desc_choices(const mpm_desc *d, mpm_fault *f)
+{
+    const char *const name[] = {"geometry", "shape", "contact", "normal", "separation"};
+    const int value[] = {(int)d->geometry, (int)d->shape, (int)d->contact, (int)d->normal, d->separation};
+    const int last[] = {MPM_AXISYMMETRIC, MPM_GIMP, MPM_CONTACT_NONE, MPM_NORMAL_LOGISTIC, 1};
+    mpm_status s = MPM_OK;
+    int i;
+    for (i = 0; i < 5 && s == MPM_OK; i++)
+        s = mpm__want(value[i] >= 0 && value[i] <= last[i], f, name[i], (mpm_real)value[i], -1);
+    for (i = 0; i < 6 && s == MPM_OK; i++)
+        s = mpm__want((int)d->side[i] >= 0 && (int)d->side[i] <= MPM_SIDE_WALL, f, "side", (mpm_real)d->side[i], i);
+    return s;
+}
+
 MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *f)
 {
-    mpm_status s;
+    mpm_status s = mpm__desc_choices(d, f);
     double nodes = 1;
     int a;
+    if (s != MPM_OK) return s;
     if ((s = mpm__want(d->cell > 0, f, "cell", d->cell, -1)) != MPM_OK) return s;
     for (a = 0; a < 3; a++) {
         if ((s = mpm__want(1, f, "origin", d->origin[a], a)) != MPM_OK) return s;
         if ((s = mpm__want(1, f, "gravity", d->gravity[a], a)) != MPM_OK) return s;
+        if (a == 1 && d->geometry != MPM_3D) continue;
         if ((s = mpm__want(d->cells[a] >= 1, f, "cells", (mpm_real)d->cells[a], a)) != MPM_OK) return s;
         nodes *= d->cells[a] + 3.0;
     }
-    for (a = 0; a < 6; a++)
-        if ((s = mpm__want(d->side[a] >= MPM_SIDE_OPEN && d->side[a] <= MPM_SIDE_WALL, f, "side",
-                           (mpm_real)d->side[a], a)) != MPM_OK)
-            return s;
     if ((s = mpm__want(nodes < 2147483647.0, f, "cells in all", (mpm_real)nodes, -1)) != MPM_OK) return s;
     if ((s = mpm__want(d->points >= 1, f, "points", (mpm_real)d->points, -1)) != MPM_OK) return s;
     if ((s = mpm__want(d->bodies >= 1, f, "bodies", (mpm_real)d->bodies, -1)) != MPM_OK) return s;
@@ -1119,7 +1132,8 @@ static inline mpm_status mpm__body_check(const mpm_world *w, const mpm_body_desc
     int a;
     if (w->bodies >= w->desc.bodies)
         return mpm__fail(f, MPM_ERR_FULL, "bodies", (mpm_real)w->desc.bodies, w->bodies);
-    if ((st = mpm__want(s->kind != MPM_SHAPE_NONE, f, "shape", (mpm_real)s->kind, -1)) != MPM_OK) return st;
+    st = mpm__want(s->kind > MPM_SHAPE_NONE && s->kind <= MPM_SHAPE_BOX, f, "shape", (mpm_real)s->kind, -1);
+    if (st != MPM_OK) return st;
     for (a = 0; a < 3; a++) {
         if ((st = mpm__want(1, f, "shape.center", s->center[a], a)) != MPM_OK) return st;
         if ((st = mpm__want(s->half[a] > 0, f, "shape.half", s->half[a], a)) != MPM_OK) return st;
@@ -1207,6 +1221,7 @@ static inline int32_t mpm__body_at(const mpm_world *w, const mpm_real *x)
 static inline int mpm__axis_outside(const mpm_desc *d, const mpm_real *x)
 {
     int a;
+    if (d->geometry == MPM_AXISYMMETRIC && !(x[0] > 0)) return 0; /* a ring without mass or radius */
     for (a = 0; a < 3; a++) {
         mpm_real t = (x[a] - d->origin[a]) * (1 / d->cell);
         if (a == 1 && mpm__flat(d)) continue;

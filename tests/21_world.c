@@ -39,11 +39,47 @@ static void bad_descriptions(void)
     d.friction = -1;
     refuses_desc("friction", d, MPM_ERR_ARGUMENT);
     d = good;
+    d.contact_cutoff = -1;
+    refuses_desc("contact_cutoff", d, MPM_ERR_ARGUMENT);
+    d = good;
+    d.user_fields = MPM_USER_FIELDS + 1;
+    refuses_desc("user_fields", d, MPM_ERR_ARGUMENT);
+    d = good;
     d.points = 0;
     refuses_desc("points", d, MPM_ERR_ARGUMENT);
     d = good;
     d.gravity[2] = nan;
     refuses_desc("gravity", d, MPM_ERR_NAN);
+}
+
+/* Numbers that name nothing, as uninitialised memory or another language would give them. */
+static void bad_choices(void)
+{
+    const mpm_desc good = scene_grid(1, 10, 10, 10, 0, 0, 0);
+    mpm_desc d = good;
+    d.geometry = (mpm_geometry)(MPM_AXISYMMETRIC + 1);
+    refuses_desc("geometry", d, MPM_ERR_ARGUMENT);
+    d = good;
+    d.shape = (mpm_shape_function)(MPM_GIMP + 1);
+    refuses_desc("shape", d, MPM_ERR_ARGUMENT);
+    d = good;
+    d.contact = (mpm_contact_law)(MPM_CONTACT_NONE + 1);
+    refuses_desc("contact", d, MPM_ERR_ARGUMENT);
+    d = good;
+    d.normal = (mpm_normal_rule)(MPM_NORMAL_LOGISTIC + 1);
+    refuses_desc("normal", d, MPM_ERR_ARGUMENT);
+    d = good;
+    d.separation = -1;
+    refuses_desc("separation", d, MPM_ERR_ARGUMENT);
+    d = good;
+    d.side[3] = (mpm_side)(MPM_SIDE_WALL + 1);
+    refuses_desc("side", d, MPM_ERR_ARGUMENT);
+    d = good;
+    d.geometry = MPM_PLANE_STRAIN;
+    d.cells[1] = 0;
+    CHECK_EQUAL("in two dimensions cells[1] is ignored", mpm_desc_check(&d, NULL), MPM_OK);
+    memset(&d, 0, sizeof d);
+    CHECK_EQUAL("a description of zeros lacks a cell", mpm_desc_check(&d, NULL), MPM_ERR_ARGUMENT);
 }
 
 static void bad_bodies(void)
@@ -73,6 +109,14 @@ static void bad_bodies(void)
     CHECK_EQUAL("... with the first body", w.fault.index, 0);
     b.shape = mpm_box(2, 2, 2, 4, 4, 4);
     CHECK_EQUAL("overlap, inside", mpm_body_add(&w, &b), MPM_ERR_OVERLAP);
+    b.shape.kind = (mpm_shape_kind)(MPM_SHAPE_BOX + 1);
+    CHECK_EQUAL("no such shape", mpm_body_add(&w, &b), MPM_ERR_ARGUMENT);
+    mpm_free(&w);
+    CHECK_EQUAL("more points than can be counted", mpm_shape_count(&d, &good.shape, MPM_R(1e-3)), 0);
+    d.geometry = MPM_AXISYMMETRIC;
+    mpm_init(&w, &d, NULL, 0);
+    b.shape = mpm_box(MPM_R(-0.25), 0, 2, 2, 1, 4);
+    CHECK_EQUAL("a ring at radius 0", mpm_body_add(&w, &b), MPM_ERR_OUTSIDE);
     mpm_free(&w);
 }
 
@@ -233,6 +277,7 @@ static void labels(void)
 int main(void)
 {
     bad_descriptions();
+    bad_choices();
     bad_bodies();
     memory();
     retirement();

@@ -408,9 +408,9 @@ typedef struct mpm_ledger {
     double absorbed;     /* energy taken by the viscous dampers */
     double contact;      /* energy lost in contact: nodal impact and friction */
     double bond;         /* energy lost in holding bonds */
-    double walls;        /* energy lost at rigid walls */
+    double walls;        /* energy lost at rigid walls; less what grips (mpm_bond.h) brought in */
     double gravity;      /* work done by gravity */
-    double impulse[3];   /* momentum brought in by dampers, sides and gravity */
+    double impulse[3];   /* momentum brought in by dampers, sides, mirror images, gravity and grips */
 } mpm_ledger;
 
 /* Everything. Plain data: read it, and write it between phases if you know why. */

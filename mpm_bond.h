@@ -108,11 +108,13 @@ typedef struct mpm_bond {
     long increments;        /* how often D grew */
 } mpm_bond;
 
-/* The energy rule with the pair of source A, 1503.74 J/m^2 and 2.271e5 J/(m^2 us), floor 0.05. */
+/* The energy rule with the pair of source A, 1503.74 J/m^2 and 2.271e5 J/(m^2 us), floor 0.05, in the given
+   units. Test: 30_bond. */
 MPM_API mpm_bond mpm_bond_default(const mpm_units *units);
 
-/* MPM_ERR_ARGUMENT / NAN with the field and its value: critical, critical_rate, floor > 0; length >= 0; with
-   MPM_BOND_USER only a grow that is not NULL; partner -1 or a user field. */
+/* MPM_ERR_ARGUMENT / NAN with the field and its value: rule and average of their lists; critical, critical_rate,
+   floor > 0; length >= 0; with MPM_BOND_USER only a grow that is not NULL; partner -1 or a user field.
+   Test: 30_bond. */
 MPM_API mpm_status mpm_bond_check(const mpm_bond *b, mpm_fault *fault);
 
 /* Growth of D of one point in one step (A 4.3 - 4.5, 4.16, 4.17).
@@ -133,7 +135,8 @@ MPM_API mpm_real mpm_bond_growth(mpm_bond *b, const mpm_world *w, int32_t point,
 MPM_API void mpm_bond_grow(mpm_bond *b, mpm_world *w, mpm_real dt);
 
 /* Nodal D into the pairs: the mean over the two bodies of their nodal values (A 4.6, 4.7), or what
-   b->decide makes of it. A body without surface point at the node counts as 0. After mpm_contact_find. */
+   b->decide makes of it. A body without surface point at the node counts as 0. After mpm_contact_find.
+   Test: 30_bond. */
 MPM_API void mpm_bond_nodes(const mpm_bond *b, mpm_world *w);
 
 /* ---- measures ------------------------------------------------------------------------------- */
@@ -147,11 +150,12 @@ typedef struct mpm_bond_measure {
     double pbcp;         /* bonded / contacted [%] (A 5.1), by area: in axisymmetry a point is a ring; 0
                             without contact */
     double abp;          /* mean D over contacted points, by area */
-    double bonded_mass, contacted_mass;
+    double bonded_mass, contacted_mass;  /* [mass] */
     double bonded_area, contacted_area; /* [length^2]; in plane strain per depth */
 } mpm_bond_measure;
 
-MPM_API mpm_bond_measure mpm_bond_measure_body(const mpm_world *w, int32_t body); /* body -1: all */
+/* Of one body, which must be one of the world's, or (-1) of all. Test: 30_bond. */
+MPM_API mpm_bond_measure mpm_bond_measure_body(const mpm_world *w, int32_t body);
 
 /* The same for the surface between two bodies: points of the one that bonded to the other last. Needs the
    partner that mpm_bond_grow noted: MPM_ERR_ARGUMENT without such a user field, or for bodies that are not
@@ -183,6 +187,7 @@ typedef struct mpm_rebound {
     double ejected_mass;
 } mpm_rebound;
 
+/* filter [length/time] >= 0; body: one of the world's. Test: 30_bond. */
 MPM_API mpm_rebound mpm_restitution(const mpm_world *w, int32_t body, mpm_real filter);
 
 /* The same relative to another body: velocities less the mass-weighted mean of that body, which drifts
@@ -200,6 +205,8 @@ typedef struct mpm_splat {
     double rim;           /* height of its highest point above it [length] */
 } mpm_splat;
 
+/* filter [length/time] >= 0; bodies of the world. What no point is slow enough for is 0.
+   Test: 30_bond. */
 MPM_API mpm_splat mpm_splat_measure(const mpm_world *w, int32_t particle, int32_t substrate, mpm_real filter);
 
 /* ---- pulling apart ---------------------------------------------------------------------------- */
@@ -212,7 +219,7 @@ typedef struct mpm_grip {
     mpm_real velocity[3]; /* [length/time] */
     int axes;             /* bit d: direction d is prescribed; 4: z alone, 7: all */
     long nodes;           /* how many it held in the last step */
-    double impulse[3];    /* momentum it gave to the body in the last step */
+    double impulse[3];    /* momentum it gave to the body in the last step [mass length/time] */
 } mpm_grip;
 
 /* Between mpm_contact_apply and mpm_g2p. Test: 32_pull. */
@@ -235,7 +242,7 @@ typedef struct mpm_pull {
     mpm_grip grip[2];          /* of the upper and of the lower body */
     double time, separation;   /* since the start: time, way of the upper grip */
     double force, grip_force;  /* tension between the bodies, and in the upper grip: means of the last sample */
-    double work;               /* of the upper grip, grip_force over the way */
+    double work;               /* of the upper grip, grip_force over the way [energy] */
     double peak_force, peak_stress, peak_separation; /* largest tension of a sample: it, over the area, where */
     long samples;
     double sum[2], since;      /* impulses and time of the sample under way */
@@ -259,7 +266,8 @@ typedef struct mpm_activation {
 
 /* Share of atoms that bond, 1 - exp(-nu t_c exp(-E_a / (k T_c + (1 - e_r) m v^2/2))) (A 2.10). recoil: e_r,
    here the share of the kinetic energy that elastic recoil gives back, the square of the velocity ratio, in
-   [0, 1]. Times the energy of a full contact, area * atoms per area * bond energy, it is the adhesion energy. */
+   [0, 1]. Times the energy of a full contact, area * atoms per area * bond energy, it is the adhesion energy.
+   Test: 30_bond. */
 MPM_API double mpm_bonded_fraction(const mpm_activation *a, double recoil);
 
 /* Bond strength as a share of the full one, 1 - exp(-nu t_c exp(-E_a / (a_1 k T_c + a_2 m v^2/2))) (A 2.11);
@@ -303,19 +311,20 @@ typedef struct mpm_logistic {
 MPM_API mpm_status mpm_bond_logistic_fit(mpm_logistic *fit, const double *x1, const double *x2, const int *outcome,
                                          long n, double ridge, int steps, mpm_fault *fault);
 
-/* Z at (x1, x2): positive where outcome 1 is the likelier. */
+/* Z at (x1, x2): positive where outcome 1 is the likelier. Test: 31_calibration. */
 MPM_API double mpm_bond_logistic_z(const mpm_logistic *fit, double x1, double x2);
 
-/* theta of the parameters as they were passed (A 4.11), for printing. */
+/* theta of the parameters as they were passed (A 4.11), for printing. Test: 31_calibration. */
 MPM_API void mpm_bond_logistic_theta(const mpm_logistic *fit, double theta[6]);
 
-/* The boundary at x1: the x2 in [low, high] with Z = 0, ascending. Returns how many: 0, 1 or 2. */
+/* The boundary at x1: the x2 in [low, high] with Z = 0, ascending. Returns how many: 0, 1 or 2.
+   Test: 31_calibration. */
 MPM_API int mpm_bond_logistic_roots(const mpm_logistic *fit, double x1, double low, double high, double root[2]);
 
 /* Where two boundaries cross inside the box low .. high of (x1, x2), low < high. Returns how many points
    it found, 0 .. 4, ordered by x1. The box is halved until neither boundary can be excluded from a part
    2^-20 of its width; Newton's method finishes. Boundaries that touch or coincide give up to four points
-   of what they share. 0 also for a box or fit that is not finite. */
+   of what they share. 0 also for a box or fit that is not finite. Test: 31_calibration. */
 MPM_API int mpm_bond_logistic_cross(const mpm_logistic *a, const mpm_logistic *b, const double low[2],
                                     const double high[2], double point[4][2]);
 
@@ -355,8 +364,11 @@ MPM_API mpm_bond mpm_bond_default(const mpm_units *u)
 
 MPM_API mpm_status mpm_bond_check(const mpm_bond *b, mpm_fault *f)
 {
+    const int rule = (int)b->rule, mean = (int)b->average;
     mpm_status s;
     s = mpm__want(b->partner >= -1 && b->partner < MPM_USER_FIELDS, f, "bond partner", (mpm_real)b->partner, -1);
+    if (s == MPM_OK) s = mpm__want(rule >= 0 && rule <= MPM_BOND_USER, f, "bond rule", (mpm_real)rule, -1);
+    if (s == MPM_OK) s = mpm__want(mean >= 0 && mean <= MPM_BOND_LITERAL, f, "bond average", (mpm_real)mean, -1);
     if (s != MPM_OK || b->rule == MPM_BOND_NONE) return s;
     if (b->rule == MPM_BOND_USER) return mpm__want(b->grow != NULL, f, "bond grow", 0, -1);
     if ((s = mpm__want(b->critical > 0, f, "bond critical", b->critical, -1)) != MPM_OK) return s;

@@ -27,6 +27,13 @@ static void growth(void)
     CHECK_EQUAL("... and is counted", b.floor_hits, 1);
     b.critical = -1;
     CHECK_EQUAL("a negative G_c is refused", mpm_bond_check(&b, NULL), MPM_ERR_ARGUMENT);
+    b = mpm_bond_default(&u);
+    b.rule = (mpm_bond_rule)(MPM_BOND_USER + 1);
+    CHECK_EQUAL("no such rule", mpm_bond_check(&b, NULL), MPM_ERR_ARGUMENT);
+    b.rule = MPM_BOND_NONE;
+    CHECK_EQUAL("no rule", mpm_bond_check(&b, NULL), MPM_OK);
+    b.average = (mpm_bond_average)(MPM_BOND_LITERAL + 1);
+    CHECK_EQUAL("no such average", mpm_bond_check(&b, NULL), MPM_ERR_ARGUMENT);
 }
 
 /* A ball on a slab, D set by hand: the three averages (A 4.6, 4.7). */

@@ -152,9 +152,11 @@ static int check(const request *q, const impact_case *c, char *m, size_t n)
            case_wants(q->range.low > 0, "low", q->range.low, "must be > 0 m/s", m, n) &&
            case_wants(q->range.high >= q->range.low && q->range.high < 1e5, "high", q->range.high,
                         "must not be under --low", m, n) &&
-           case_wants(q->range.step > 0, "step", q->range.step, "must be > 0 m/s", m, n) &&
-           case_wants(q->range.scan >= q->range.step, "scan", q->range.scan, "must not be under --step", m, n) &&
-           case_wants(critical_cost(&q->range) * q->offsets <= CRITICAL_RUNS, "scan", q->range.scan,
+           case_wants(q->range.step >= 1e-6, "step", q->range.step, "must be 1e-6 m/s or more", m, n) &&
+           case_wants(q->range.scan >= q->range.step && q->range.scan < 1e5, "scan", q->range.scan,
+                        "must be in [--step, 1e5) m/s", m, n) &&
+           case_wants((q->range.high - q->range.low) / q->range.scan < CRITICAL_RUNS &&
+                      critical_cost(&q->range) * q->offsets <= CRITICAL_RUNS, "scan", q->range.scan,
                         "makes more than 2000 runs", m, n);
 }
 

@@ -38,8 +38,8 @@ static int check(const pull_case *c, char *m, size_t n)
            case_wants(c->ramp >= 0 && c->ramp < 1e9, "ramp", c->ramp, "must be >= 0 ns", m, n) &&
            case_wants(c->sample > 0 && c->sample < 1e9, "sample", c->sample, "must be > 0 ns", m, n) &&
            case_wants(c->distance > 0 && c->distance < 1e6, "distance", c->distance, "must be > 0 um", m, n) &&
-           case_wants(c->distance / c->velocity * 1e3 / c->sample < 1e6, "sample", c->sample, "too many of them", m,
-                        n) &&
+           case_wants((c->distance / c->velocity * 1e3 + c->ramp) / c->sample < 1e6, "sample", c->sample,
+                      "too many of them", m, n) &&
            case_wants(c->grip > 0 && c->grip < 1e6, "grip", c->grip, "must be > 0 um", m, n);
 }
 
@@ -186,20 +186,20 @@ static int run(impact *s, const impact_case *ic, const pull_case *o, curve *c, c
     mpm_fault fault;
     mpm_pull p;
     char path[1024];
+    int drawn;
     while (s->world.steps < s->steps)
         if (impact_step(s) < 0) return report(&s->world.fault, "impact");
     r = impact_measure(s, ic);
     met = mpm_bond_interface(&s->world, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
     memset(&p, 0, sizeof p);
+    if (met.area > 0 && describe(&p, s, ic, o, &met, &fault) != MPM_OK) return report(&fault, "--grip");
     if (mpm_io_csv_begin(&table, file_in(o->folder, "pull.csv", path, sizeof path),
                          "time_ns,way_um,force_uN,grip_force_uN,stress_MPa,nodes_met,nodes_bonded,nodes_held",
                          "pull: forces of the whole particle", &fault) < 0)
         return report(&fault, path);
-    if (met.area > 0) { /* else the particle has left: strength 0 */
-        if (describe(&p, s, ic, o, &met, &fault) != MPM_OK) return report(&fault, "--grip");
-        if (!draw(s, o, &p, &table, c)) return 0;
-    }
+    drawn = met.area > 0 ? draw(s, o, &p, &table, c) : 1; /* without contact the particle has left: strength 0 */
     if (mpm_io_csv_end(&table, &fault) < 0) return report(&fault, path);
+    if (!drawn) return 0;
     if (!write_summary(s, o, &r, &met, &p, options, n) || !write_picture(s, ic, o, &p, c)) return 0;
     if (!o->quiet)
         printf("strength %.4g MPa: %.4g uN over %.4g um2 of contact (%.4g um2 at bonded nodes)\n"

@@ -34,7 +34,8 @@ static inline impact_case study_case_default(void)
 }
 
 /* Source A's substrates (Table 5.3): its diameter between the listed sizes by interpolation, in proportion
-   beyond them; 10 um high between 14 and 30 um, in proportion beyond. "large": 5 diameters wide, 2.5 high. */
+   beyond them; 10 um high between 14 and 30 um, in proportion beyond. "large": 5 diameters wide, 2.5 high.
+   Fills in what is 0. */
 static inline void study_complete(impact_case *c, const char *substrate)
 {
     static const double size[5] = {14, 18, 22, 26, 30}, wide[5] = {30, 36, 44, 46, 50};
@@ -44,9 +45,9 @@ static inline void study_complete(impact_case *c, const char *substrate)
     for (k = 0; k < 4; k++)
         if (d >= size[k] && d <= size[k + 1])
             width = wide[k] + (wide[k + 1] - wide[k]) * (d - size[k]) / (size[k + 1] - size[k]);
-    if (!(c->substrate_diameter > 0)) c->substrate_diameter = strcmp(substrate, "large") ? width : 5 * d;
-    if (!(c->substrate_height > 0)) c->substrate_height = strcmp(substrate, "large") ? 10 * d / near_size : 2.5 * d;
-    if (!(c->time > 0)) c->time = d > 30 ? 80 * d / 30 : 80;
+    if (!(fabs(c->substrate_diameter) > 0)) c->substrate_diameter = strcmp(substrate, "large") ? width : 5 * d;
+    if (!(fabs(c->substrate_height) > 0)) c->substrate_height = strcmp(substrate, "large") ? 10 * d / near_size : 2.5 * d;
+    if (!(fabs(c->time) > 0)) c->time = d > 30 ? 80 * d / 30 : 80;
 }
 
 /* The case in words: version, whether it may end early, and every option with its value. */
@@ -103,7 +104,7 @@ typedef struct study {
     int quiet, early;       /* early: end a run once the particle has left for good */
     long limit;             /* new runs allowed; < 0: any number */
     long planned, done, fresh; /* runs: in all (a guess at first), finished, of these made now */
-    double spent;           /* wall seconds of the fresh ones */
+    double spent;           /* CPU seconds of the fresh ones */
     char label[80];
     time_t shown;
 } study;

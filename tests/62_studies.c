@@ -96,6 +96,8 @@ static void critical(void)
     refused("critical_velocity --low -5", "-5");
     refused("critical_velocity --high 100", "high 100");
     refused("critical_velocity --step 0", "step 0");
+    refused("critical_velocity --scan 1e-5 --step 1e-6", "scan 1e-05");
+    refused("critical_velocity --time -5", "time -5");
     refused("critical_velocity --scan nan", "nan");
     refused("critical_velocity --material mud", "mud");
     refused("critical_velocity --velocity 810", "--velocity");

@@ -90,10 +90,11 @@ static inline int particles_begin(impact *s, const particles_case *q, char *mess
     int a;
     memset(s, 0, sizeof *s);
     if (!impact_check(&q->base, message, n)) return 0;
-    if (!case_wants(!strcmp(q->base.geometry, "3d"), "count", (double)q->count, "particles need geometry 3d", message, n))
-        return 0;
     for (k = 0; k < q->count; k++) {
-        const double *x = q->center[k], reach = fmax(fabs(x[0]), fabs(x[1])) + q->base.diameter / 2;
+        const double *x = q->center[k], aside = fmax(fabs(x[0]), fabs(x[1])), reach = aside + q->base.diameter / 2;
+        if (!case_wants(!strcmp(q->base.geometry, "3d") || !(aside > 0), "offset", aside, "beside the axis: needs geometry 3d",
+                        message, n))
+            return 0;
         room.substrate_diameter = fmax(room.substrate_diameter, 2 * reach);
         room.gap = fmax(room.gap, x[2] - q->base.diameter / 2);
     }
@@ -138,7 +139,7 @@ typedef struct particle_report {
     mpm_bond_measure bond;  /* of its own points */
     long nodes;             /* bonded nodes to any other body */
     double v_z, v_along;    /* of its points up to 60 m/s, from the substrate's mean: up, along the face [m/s] */
-    double ejected;         /* share of its mass faster than 60 m/s */
+    double ejected;         /* share of its mass faster than 60 m/s; 0 on its way down */
     double height;          /* of its centre of mass, um */
 } particle_report;
 
@@ -205,6 +206,7 @@ static inline void particles_report(const impact *s, const particles_case *q, pa
         if (hypot(r[a].v_z, r[a].v_along) <= 5) r[a].fate = linked[a] ? PARTICLE_BONDED : PARTICLE_RESTING;
         else if (-r[a].v_z > r[a].v_along) r[a].fate = PARTICLE_ARRIVING;
         else r[a].fate = r[a].v_z >= r[a].v_along ? PARTICLE_REBOUNDED : PARTICLE_SHEARED;
+        if (r[a].fate == PARTICLE_ARRIVING) r[a].ejected = 0;
     }
 }
 
@@ -226,7 +228,8 @@ static inline int particles_picture(const impact *s, const particles_case *q, co
     }
     for (i = 0; i < 2; i++) {
         cut[i] = mpm_io_cut_of(w, i ? NULL : w->points.plastic_strain);
-        cut[i].at = q->base.spacing / 2;
+        cut[i].at = w->desc.geometry == MPM_3D ? q->base.spacing / 2 : 0;
+        cut[i].mirror = w->desc.side[0] == MPM_SIDE_SYMMETRY;
         cut[i].window[0] = -1.05 * edge;
         cut[i].window[1] = 1.05 * edge;
         cut[i].window[2] = -1.05 * q->base.substrate_height;

@@ -564,6 +564,19 @@ static double read_summary(const char *folder, const char *key)
     return at ? strtod(at + strlen(quoted), NULL) : -1;
 }
 
+/* Two particles of 14 um, the second `offset` aside and its centre 30 um up. */
+static void two_scene(particles_case *q, grid g, const char *geometry, double offset)
+{
+    *q = particles_default("half", "");
+    q->base.geometry = geometry;
+    q->base.cell = g.cell;
+    q->base.spacing = g.spacing;
+    q->count = 2;
+    q->center[0][2] = q->base.diameter / 2;
+    q->center[1][0] = offset;
+    q->center[1][2] = 30;
+}
+
 /* Runs a scene unless its summary, which is written last, is there. As study_need. */
 static int need_particles(work *w, particles_case *q, const char *folder)
 {
@@ -583,7 +596,7 @@ static int need_particles(work *w, particles_case *q, const char *folder)
 
 static grid particles_grid(const work *w, grid full)
 {
-    static const grid coarse[2] = {{1.5, 0.75}, {1.5, 0.5}};
+    static const grid coarse[2] = {{1.5, 0.5}, {1.0, 0.35}};
     return w->budget == FULL ? full : coarse[w->budget];
 }
 
@@ -597,37 +610,34 @@ static int two_particles(work *w)
     mpm_io_csv t;
     int k, status;
     mpm_io_csv_begin(&t, data_file(w, "two_particles.csv", path, sizeof path),
-                     "offset_um,pbcp_percent,top_v_z_m_s,bottom_v_z_m_s,top,bottom,cell_um,spacing_um", "A-two", &w->fault);
+                     "offset_um,pbcp_percent,top_v_z_m_s,bottom_v_z_m_s,top,bottom,cell_um,spacing_um,geometry", "A-two", &w->fault);
     say(w, "### A-two: one particle on another\n\nTwo of 14 um at 810 m/s, 3D (half), %.3g/%.3g um, after 100 ns; velocities of points up to 60 m/s, from the "
            "substrate's mean.\n\n| offset, um | PBCP, %%: source A | here | top v_z, m/s: source A | here | bottom v_z: source A | here | top | bottom | CPU s |\n"
            "|---|---|---|---|---|---|---|---|---|---|\n", g.cell, g.spacing);
-    for (k = 0; k < 4; k++) {
-        q = particles_default("half", "");
-        q.base.cell = g.cell;
-        q.base.spacing = g.spacing;
-        q.count = 2;
-        q.center[0][2] = q.base.diameter / 2;
-        q.center[1][0] = offset[k];
-        q.center[1][2] = 30;
-        snprintf(folder, sizeof folder, "%s/two_%g_%g_%g", w->s.folder, g.cell, g.spacing, offset[k]);
+    for (k = 0; k < 5; k++) { /* the last: the first once more, on source A's grid */
+        const int rings = k == 4, at = k % 4;
+        const grid here = rings ? fine : g;
+        two_scene(&q, here, rings ? "axisymmetric" : "3d", offset[at]);
+        snprintf(folder, sizeof folder, "%s/two_%s_%g_%g_%g", w->s.folder, q.base.geometry, here.cell, here.spacing, offset[at]);
         status = need_particles(w, &q, folder);
         if (status <= 0 || read_particles(folder, row, 2) != 2) {
             mpm_io_csv_end(&t, NULL);
             if (status > 0) snprintf(w->message, sizeof w->message, "%.300s/particles.csv has not two rows", folder);
             return status > 0 ? 0 : status;
         }
-        say(w, "| %g | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %s | %s | %.0f |\n", offset[k], said[0][k], read_summary(folder, "pbcp_percent"), said[1][k],
-            row[1].v_z, said[2][k], row[0].v_z, row[1].fate, row[0].fate, read_summary(folder, "cpu_seconds"));
-        mpm_io_csv_real(&t, (mpm_real)offset[k]);
+        say(w, "| %g%s | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %s | %s | %.0f |\n", offset[at],
+            rings ? ", axisymmetric, 0.7/0.175" : "", said[0][at], read_summary(folder, "pbcp_percent"), said[1][at], row[1].v_z, said[2][at], row[0].v_z, row[1].fate, row[0].fate, read_summary(folder, "cpu_seconds"));
+        mpm_io_csv_real(&t, (mpm_real)offset[at]);
         mpm_io_csv_real(&t, (mpm_real)read_summary(folder, "pbcp_percent"));
         mpm_io_csv_real(&t, (mpm_real)row[1].v_z);
         mpm_io_csv_real(&t, (mpm_real)row[0].v_z);
         mpm_io_csv_text(&t, row[1].fate);
         mpm_io_csv_text(&t, row[0].fate);
-        mpm_io_csv_real(&t, (mpm_real)g.cell);
-        mpm_io_csv_real(&t, (mpm_real)g.spacing);
+        mpm_io_csv_real(&t, (mpm_real)here.cell);
+        mpm_io_csv_real(&t, (mpm_real)here.spacing);
+        mpm_io_csv_text(&t, q.base.geometry);
     }
-    say(w, "\nSource A: the last one rebounds.\n\n");
+    say(w, "\nSource A, 0.7/0.175 in 3D: the one at 7.5 um rebounds.\n\n");
     return mpm_io_csv_end(&t, &w->fault) >= 0 || failed(w);
 }
 
@@ -635,7 +645,7 @@ static int ten_particles(work *w)
 {
     static particles_case q;
     const grid fine = {1.0, 0.35}, g = particles_grid(w, fine);
-    const double spread = 36;
+    const double spread = 60;
     particle_row row[10];
     char folder[MPM_IO_PATH];
     int k, status;
@@ -645,7 +655,7 @@ static int ten_particles(work *w)
     q.count = 10;
     q.base.substrate_diameter = q.base.time = 0;
     if (!particles_place(&q, spread, particles_height(&q, spread), 1)) return 0;
-    snprintf(folder, sizeof folder, "%s/ten_%g_%g", w->s.folder, g.cell, g.spacing);
+    snprintf(folder, sizeof folder, "%s/ten_%g_%g_%g", w->s.folder, g.cell, g.spacing, spread);
     if ((status = need_particles(w, &q, folder)) <= 0) return status;
     say(w, "### A-ten: ten particles\n\nTen of 14 um at 810 m/s at random places and heights, 3D, %.3g/%.3g um, after %.0f ns. Source A (1.0/0.35): most bond, one is "
            "prevented by ejected material.\n\n| particle | fate | PBCP, %% | v_z, m/s | along the face, m/s | ejected, %% |\n|---|---|---|---|---|---|\n",

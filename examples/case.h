@@ -40,4 +40,7 @@ static inline int case_knows(const char *list, const char *option, const char *w
     return 0;
 }
 
+/* part / whole, and 0 of nothing. */
+static inline double case_share(double part, double whole) { return whole > 0 ? part / whole : 0; }
+
 #endif

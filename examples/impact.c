@@ -127,6 +127,7 @@ static int write_summary(const impact *s, const impact_case *c, const output *o,
     const impact_result r = impact_measure(s, c);
     const mpm_material *a = &s->material[IMPACT_PARTICLE], *b = &s->material[IMPACT_SUBSTRATE];
     const mpm_world *w = &s->world;
+    const double start = s->start.kinetic;
     char path[1024];
     mpm_fault fault;
     mpm_io_json j;
@@ -166,13 +167,13 @@ static int write_summary(const impact *s, const impact_case *c, const output *o,
     mpm_io_json_number(&j, "momentum_error", r.momentum_error);
     mpm_io_json_number(&j, "energy_error", r.energy_error);
     mpm_io_json_number(&j, "energy_unaccounted", r.energy_unaccounted);
-    mpm_io_json_number(&j, "energy_kinetic_fraction", r.all.kinetic / s->start.kinetic);
-    mpm_io_json_number(&j, "energy_plastic_fraction", r.all.plastic / s->start.kinetic);
+    mpm_io_json_number(&j, "energy_kinetic_fraction", case_share(r.all.kinetic, start));
+    mpm_io_json_number(&j, "energy_plastic_fraction", case_share(r.all.plastic, start));
     mpm_io_json_number(&j, "energy_elastic_fraction",
-                       (r.all.internal - s->start.internal - r.all.plastic) / s->start.kinetic);
-    mpm_io_json_number(&j, "energy_absorbed_fraction", w->ledger.absorbed / s->start.kinetic);
-    mpm_io_json_number(&j, "energy_contact_fraction", w->ledger.contact / s->start.kinetic);
-    mpm_io_json_number(&j, "energy_bond_fraction", w->ledger.bond / s->start.kinetic);
+                       case_share(r.all.internal - s->start.internal - r.all.plastic, start));
+    mpm_io_json_number(&j, "energy_absorbed_fraction", case_share(w->ledger.absorbed, start));
+    mpm_io_json_number(&j, "energy_contact_fraction", case_share(w->ledger.contact, start));
+    mpm_io_json_number(&j, "energy_bond_fraction", case_share(w->ledger.bond, start));
     mpm_io_json_integer(&j, "floor_hits", s->bond.floor_hits);
     mpm_io_json_integer(&j, "bond_increments", s->bond.increments);
     mpm_io_json_integer(&j, "shear_floor_hits", (long long)(a->shear_floor_hits + b->shear_floor_hits));
@@ -187,6 +188,7 @@ static void print_table(const impact *s, const impact_case *c, double cpu)
 {
     const impact_result r = impact_measure(s, c);
     const mpm_world *w = &s->world;
+    const double start = s->start.kinetic;
     const int stays = fabs(r.relative) <= 5 && w->held > 0;
     char name[64];
     printf("\n  %s, %g um at %g m/s after %.4g ns: %s\n\n", metals(s, name, sizeof name), c->diameter, c->velocity,
@@ -209,11 +211,11 @@ static void print_table(const impact *s, const impact_case *c, double cpu)
     printf("  highest temperature             %10.1f K\n", r.all.temperature_max);
     printf("  points ejected, retired         %10ld, %ld of %ld\n", r.rebound.ejected, w->retired, r.all.points);
     printf("  energy: kinetic                 %10.3f %%    plastic work %.3f %%, elastic %.3f %%\n",
-           100 * r.all.kinetic / s->start.kinetic, 100 * r.all.plastic / s->start.kinetic,
-           100 * (r.all.internal - s->start.internal - r.all.plastic) / s->start.kinetic);
+           100 * case_share(r.all.kinetic, start), 100 * case_share(r.all.plastic, start),
+           100 * case_share(r.all.internal - s->start.internal - r.all.plastic, start));
     printf("  energy: absorbed by dampers     %10.3f %%    lost in contact %.3f %%, in the bond %.3f %%\n",
-           100 * w->ledger.absorbed / s->start.kinetic, 100 * w->ledger.contact / s->start.kinetic,
-           100 * w->ledger.bond / s->start.kinetic);
+           100 * case_share(w->ledger.absorbed, start), 100 * case_share(w->ledger.contact, start),
+           100 * case_share(w->ledger.bond, start));
     printf("  errors: mass %.1e, momentum %.1e, energy unaccounted %.3f %%\n", r.mass_error, r.momentum_error,
            100 * r.energy_unaccounted);
     printf("  bond floor acted                %10ld times of %ld\n", s->bond.floor_hits, s->bond.increments);

@@ -89,27 +89,47 @@ static inline int impact_agrees(const impact_case *c, char *m, size_t n)
                         "an oblique impact has one mirror plane: add --symmetry half (or full)", m, n);
 }
 
+/* Half axes of the particle across and along z, um: the volume is that of the sphere. */
+static inline double impact_half_width(const impact_case *c) { return c->diameter / 2 / cbrt(c->aspect); }
+static inline double impact_half_height(const impact_case *c) { return impact_half_width(c) * c->aspect; }
+
+/* Whether the whole model's grid and points can be counted. */
+static inline int impact_fits(const impact_case *c, char *m, size_t n)
+{
+    const int rings = !strcmp(c->geometry, "axisymmetric");
+    const double margin = fabs(c->margin) * c->diameter, high = 2 * impact_half_height(c);
+    const double wide = fmax(c->substrate_diameter, 2 * impact_half_width(c));
+    const double across = (wide + 2 * margin) / c->cell + 8, row = wide / c->spacing + 1;
+    const double tall = (c->substrate_height + high + fabs(c->gap) + margin) / c->cell + 8;
+    const double layers = fmax(c->substrate_height, high) / c->spacing + 1;
+    return case_wants((rings ? 1 : across) * across * tall < 2e9, "cell", c->cell,
+                        "makes a grid of more than 2e9 cells", m, n) &&
+           case_wants((rings ? 1 : row) * row * layers < 2e9, "spacing", c->spacing,
+                        "makes more than 2e9 points", m, n);
+}
+
 /* Checks what the library cannot know. Returns 1, or 0 with a message. */
 static inline int impact_check(const impact_case *c, char *m, size_t n)
 {
     const double big = 1e6;
-    return case_wants(c->diameter > 0 && c->diameter < big, "diameter", c->diameter, "must be > 0 um", m, n) &&
-           case_wants(c->velocity > -1e5 && c->velocity < 1e5, "velocity", c->velocity, "must be finite", m, n) &&
+    return case_wants(c->diameter > 0 && c->diameter < big, "diameter", c->diameter, "must be in (0, 1e6) um", m, n) &&
+           case_wants(c->velocity > -1e5 && c->velocity < 1e5, "velocity", c->velocity, "must be within 1e5 m/s",
+                        m, n) &&
            case_wants(c->angle > -90 && c->angle < 90, "angle", c->angle, "must be in (-90, 90) degrees", m, n) &&
            case_wants(c->aspect >= 0.1 && c->aspect <= 10, "aspect", c->aspect, "must be 0.1 .. 10", m, n) &&
            case_wants(c->temperature > 0 && c->temperature < 1e5, "temperature", c->temperature,
                         "must be > 0 K", m, n) &&
            case_wants(c->substrate_temperature >= 0 && c->substrate_temperature < 1e5, "substrate-temperature",
                         c->substrate_temperature, "must be > 0 K, or 0 for that of the particle", m, n) &&
-           case_wants(c->cell > 0 && c->cell < big, "cell", c->cell, "must be > 0 um", m, n) &&
+           case_wants(c->cell > 0 && c->cell < big, "cell", c->cell, "must be in (0, 1e6) um", m, n) &&
            case_wants(c->spacing > 0, "spacing", c->spacing, "must be > 0 um", m, n) &&
            case_wants(c->spacing <= c->cell, "spacing", c->spacing, "must not be larger than the cell", m, n) &&
            case_wants(c->spacing * 1000 > c->diameter, "spacing", c->spacing, "too fine for the diameter", m, n) &&
            case_wants(c->spacing <= c->diameter / 2, "spacing", c->spacing, "too coarse for the diameter", m, n) &&
            case_wants(c->substrate_diameter > 0 && c->substrate_diameter < big, "substrate-diameter",
-                        c->substrate_diameter, "must be > 0 um", m, n) &&
+                        c->substrate_diameter, "must be in (0, 1e6) um", m, n) &&
            case_wants(c->substrate_height > 0 && c->substrate_height < big, "substrate-height",
-                        c->substrate_height, "must be > 0 um", m, n) &&
+                        c->substrate_height, "must be in (0, 1e6) um", m, n) &&
            case_wants(c->time > 0 && c->time < 1e9, "time", c->time, "must be > 0 ns", m, n) &&
            case_wants(c->dt_factor > 0 && c->dt_factor <= 1, "dt-factor", c->dt_factor, "must be in (0, 1]", m, n) &&
            case_wants(c->gc > 0 && c->gc < 1e30, "gc", c->gc, "must be > 0 J/m2", m, n) &&
@@ -119,9 +139,9 @@ static inline int impact_check(const impact_case *c, char *m, size_t n)
            case_wants(c->epsdot_c > 0 && c->epsdot_c < 1e30, "epsdot-c", c->epsdot_c, "must be > 0 per us", m, n) &&
            case_wants(c->shell > 0 && c->shell < big, "shell", c->shell, "must be > 0 spacings", m, n) &&
            case_wants(c->friction >= 0 && c->friction < 1e30, "friction", c->friction, "must be >= 0", m, n) &&
-           case_wants(c->gap > -big && c->gap < big, "gap", c->gap, "must be finite", m, n) &&
-           case_wants(c->margin > -big && c->margin < big, "margin", c->margin, "must be finite", m, n) &&
-           case_wants(c->offset > -big && c->offset < big, "grid-offset", c->offset, "must be finite", m, n) &&
+           case_wants(c->gap > -big && c->gap < big, "gap", c->gap, "must be within 1e6 um", m, n) &&
+           case_wants(c->margin > -big && c->margin < big, "margin", c->margin, "must be within 1e6", m, n) &&
+           case_wants(c->offset > -big && c->offset < big, "grid-offset", c->offset, "must be within 1e6 um", m, n) &&
            case_knows("sphere|ellipsoid", "shape", c->shape, m, n) &&
            case_knows("preset|elastic|linear|jc|scg|ptw", "model", c->model, m, n) &&
            case_knows("none|energy|strain", "bond", c->bond, m, n) &&
@@ -130,12 +150,9 @@ static inline int impact_check(const impact_case *c, char *m, size_t n)
            case_knows("3d|axisymmetric", "geometry", c->geometry, m, n) &&
            case_knows("linear|gimp", "functions", c->functions, m, n) &&
            case_knows("ranked|mvg|average|vertical|logistic", "normal", c->normal, m, n) &&
-           case_knows("consistent|staged", "plasticity", c->plasticity, m, n) && impact_agrees(c, m, n);
+           case_knows("consistent|staged", "plasticity", c->plasticity, m, n) && impact_fits(c, m, n) &&
+           impact_agrees(c, m, n);
 }
-
-/* Half axes of the particle across and along z, um: the volume is that of the sphere. */
-static inline double impact_half_width(const impact_case *c) { return c->diameter / 2 / cbrt(c->aspect); }
-static inline double impact_half_height(const impact_case *c) { return impact_half_width(c) * c->aspect; }
 
 /* The grid: planes through the interface z = 0 (shifted by offset), reaching `margin` beyond the
    bodies on the free sides, where ejected material flies. */
@@ -321,7 +338,7 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
     r.particle = mpm_body_totals(w, IMPACT_PARTICLE);
     r.substrate = mpm_body_totals(w, IMPACT_SUBSTRATE);
     r.all = mpm_body_totals(w, -1);
-    r.restitution = fabs(c->velocity) > 0 ? r.rebound.filtered / fabs(c->velocity) : 0;
+    r.restitution = case_share(r.rebound.filtered, fabs(c->velocity));
     r.substrate_drift = r.substrate.momentum[2] / r.substrate.mass;
     r.relative = r.rebound.mean - r.substrate_drift;
     r.filtered_relative = r.rebound.filtered - r.substrate_drift;

@@ -73,8 +73,25 @@ static inline int particles_place(particles_case *q, double spread, double heigh
         least = fmin(least, x[2]);
     }
     for (k = 0; k < q->count; k++) q->center[k][2] += q->base.diameter / 2 - least;
-    if (!(q->base.substrate_diameter > 0)) q->base.substrate_diameter = spread + q->base.diameter;
-    if (!(q->base.time > 0)) q->base.time = 1e3 * height / q->base.velocity + 40;
+    if (!(fabs(q->base.substrate_diameter) > 0)) q->base.substrate_diameter = spread + q->base.diameter;
+    if (!(fabs(q->base.time) > 0)) q->base.time = 1e3 * height / q->base.velocity + 40;
+    return 1;
+}
+
+/* A mirror may halve a particle, or have it whole on its side. Returns 1, or 0 with a message. */
+static inline int particles_mirrored(const particles_case *q, char *message, size_t n)
+{
+    const int rings = !strcmp(q->base.geometry, "axisymmetric");
+    const int mirrors = rings ? 0 : case_word("full|half|quarter", q->base.symmetry); /* y = 0, then x = 0 too */
+    long k;
+    int a;
+    for (k = 0; k < q->count; k++)
+        for (a = 0; a < 2; a++)
+            if (mirrors >= 2 - a && fabs(q->center[k][a]) > 0 && q->center[k][a] < impact_half_width(&q->base)) {
+                snprintf(message, n, "--symmetry %s: the mirror %c = 0 cuts particle %ld beside its middle",
+                         q->base.symmetry, "xy"[a], k);
+                return 0;
+            }
     return 1;
 }
 
@@ -90,6 +107,7 @@ static inline int particles_begin(impact *s, const particles_case *q, char *mess
     int a;
     memset(s, 0, sizeof *s);
     if (!impact_check(&q->base, message, n)) return 0;
+    if (!particles_mirrored(q, message, n)) return 0;
     for (k = 0; k < q->count; k++) {
         const double *x = q->center[k], aside = fmax(fabs(x[0]), fabs(x[1])), reach = aside + q->base.diameter / 2;
         if (!case_wants(!strcmp(q->base.geometry, "3d") || !(aside > 0), "offset", aside, "beside the axis: needs geometry 3d",
@@ -304,8 +322,8 @@ static inline int particles_write(const impact *s, const particles_case *q, cons
     mpm_io_json_number(&j, "time_ns", (double)w->time * 1e3);
     mpm_io_json_number(&j, "mass_error", (sums.mass - s->start.mass) / s->start.mass);
     mpm_io_json_number(&j, "energy_unaccounted",
-                       (sums.kinetic + sums.internal + w->ledger.absorbed + w->ledger.contact + w->ledger.bond +
-                        w->ledger.walls - s->start.kinetic - s->start.internal) / s->start.kinetic);
+                       case_share(sums.kinetic + sums.internal + w->ledger.absorbed + w->ledger.contact + w->ledger.bond +
+                        w->ledger.walls - s->start.kinetic - s->start.internal, s->start.kinetic));
     mpm_io_json_number(&j, "cpu_seconds", cpu);
     options_json(&j, o, n);
     return mpm_io_json_end(&j, fault) >= 0;
@@ -370,6 +388,7 @@ say:
 static inline int particles_options(particles_case *q, option *o)
 {
     int n = impact_options(&q->base, o);
+    option_drop(o, &n, "gap"); /* by the places of the particles */
     option_add(o, &n, "frames", OPTION_LONG, &q->frames, "pictures, evenly in time");
     option_add(o, &n, "out", OPTION_TEXT, &q->folder, "output folder");
     option_add(o, &n, "quiet", OPTION_FLAG, &q->quiet, "no progress line, no table");

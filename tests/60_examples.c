@@ -144,6 +144,7 @@ int main(void)
     refused("--spacing 2", "2");
     refused("--gap -3", "overlap");
     refused("--margin -0.6", "outside");
+    refused("--substrate-diameter 1e5", "cell 1.5");
     refused("--material unobtainium", "unobtainium");
     refused("--substrate-material unobtainium", "unobtainium");
     refused("--angle 30", "--symmetry half");

@@ -164,6 +164,7 @@ static void particles(void)
     refused("two_particles --height 10", "overlap");
     refused("two_particles --geometry axisymmetric --offset 2", "3d");
     refused("two_particles --offset inf", "inf");
+    refused("two_particles --symmetry quarter --offset 3", "quarter");
     refused("many_particles --count 0", "count 0");
     refused("many_particles --count 501", "501");
     refused("many_particles --count 400 --spread 20 --height 30", "no room");

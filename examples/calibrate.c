@@ -143,7 +143,7 @@ static int collect(const calibration *q, const study *s, const option *o, int n,
 
 static int check(const calibration *q, char *m, size_t n)
 {
-    const impact_case a = calibration_case(q, 0, 0), b = calibration_case(q, 1, 0);
+    impact_case c;
     int k;
     if (!(case_knows("thesis|large", "substrate", q->substrate, m, n) &&
           case_knows("log|linear", "scale", q->scale, m, n) && case_knows("thesis|stays", "rule", q->rule, m, n) &&
@@ -153,8 +153,9 @@ static int check(const calibration *q, char *m, size_t n)
           case_wants(q->gdot[1] > q->gdot[0] && q->gdot[1] < 1e30, "gdot-high", q->gdot[1], "must be over --gdot-low", m, n) &&
           case_wants(q->columns >= 5, "columns", (double)q->columns, "must be 5 or more", m, n) &&
           case_wants(q->rows >= 5, "rows", (double)q->rows, "must be 5 or more", m, n) &&
-          case_wants(q->columns < CALIBRATION_NODES && calibration_nodes(q) <= CALIBRATION_NODES, "columns",
-                       (double)q->columns, "makes more than 4000 pairs", m, n) &&
+          case_wants(q->columns < CALIBRATION_NODES && q->rows < CALIBRATION_NODES &&
+                       calibration_nodes(q) <= CALIBRATION_NODES, "columns", (double)q->columns,
+                       "makes more than 4000 pairs", m, n) &&
           case_wants(q->stays > 0, "stays", q->stays, "must be > 0 m/s", m, n)))
         return 0;
     for (k = 0; k < 2; k++)
@@ -163,7 +164,11 @@ static int check(const calibration *q, char *m, size_t n)
                           "must be >= 0", m, n) ||
             !case_wants(q->velocity[k] > 0, k ? "velocity-2" : "velocity-1", q->velocity[k], "must be > 0 m/s", m, n))
             return 0;
-    return impact_check(&a, m, n) && impact_check(&b, m, n);
+    for (k = 0; k < 2; k++) { /* behind the others: it divides by the columns */
+        c = calibration_case(q, k, 0);
+        if (!impact_check(&c, m, n)) return 0;
+    }
+    return 1;
 }
 
 int main(int argc, char **argv)

@@ -134,6 +134,8 @@ static void calibration(void)
     CHECK_TRUE("the boundary parts them, but for a few", number_in(summary, "tests_on_the_wrong_side") <= 3);
     CHECK_TRUE("a picture", contents(FOLDER "/calibrate/classes.png", output, sizeof output) > 1000);
     refused("calibrate --columns 4", "columns 4");
+    refused("calibrate --columns 0", "columns 0");
+    refused("calibrate --rows 1000000000000000000", "more than 4000");
     refused("calibrate --rows 4000", "columns 25");
     refused("calibrate --gc-low 0", "gc-low 0");
     refused("calibrate --gdot-high 10", "gdot-high 10");

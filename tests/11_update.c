@@ -209,7 +209,7 @@ static double drive(mpm_material *m, double dt, int *plastic, int *wrong)
             if (3 * mu * d > 4 * EPS * vm) {
                 ++*plastic;
                 blur = 8 * EPS * pressure + (double)law.rate_slope * EPS * vm / (3 * mu * d);
-                worst = fmax(worst, fmax(fabs(vm - flow) - blur, 0) / fmax(flow, 1e-9 * mu));
+                worst = check_worst(worst, check_worst(fabs(vm - flow) - blur, 0) / fmax(flow, 1e-9 * mu));
             } else {
                 s.plastic_rate = (mpm_real)(4 * EPS * vm / (3 * mu * dt));
                 flow = (double)mpm_material_flow_stress(m, &s);

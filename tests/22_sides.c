@@ -147,7 +147,7 @@ static void mirrors(mpm_shape_function shape, const char *name)
         high[full] = mpm_body_totals(&w, 0).high[0];
         for (a = 0; a < 3 && !full; a++) {
             const double start = a == 2 ? -500 * mpm_body_totals(&w, 0).mass : 0;
-            lost = fmax(lost, fabs(t.momentum[a] - start - w.ledger.impulse[a]));
+            lost = check_worst(lost, fabs(t.momentum[a] - start - w.ledger.impulse[a]));
         }
         lost /= full ? 1 : 500 * mpm_body_totals(&w, 0).mass;
         mpm_free(&w);

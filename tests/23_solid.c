@@ -85,7 +85,7 @@ static void corner(const int *order, mpm_contact_law law, double *worst, double 
         for (k = 0; k < 4; k++) {
             const mpm_totals now = mpm_body_totals(&w, k);
             for (a = 0; a < 3; a++)
-                *worst = fmax(*worst, fabs(now.momentum[a] - t[k].momentum[a] - sum[k][a]) / scale);
+                *worst = check_worst(*worst, fabs(now.momentum[a] - t[k].momentum[a] - sum[k][a]) / scale);
             t[k] = now;
         }
         for (i = 0; i < w.pairs; i++) {
@@ -97,7 +97,7 @@ static void corner(const int *order, mpm_contact_law law, double *worst, double 
         }
     }
     for (a = 0; a < 3; a++)
-        *total = fmax(*total, fabs(mpm_body_totals(&w, -1).momentum[a] - all.momentum[a]) / scale);
+        *total = check_worst(*total, fabs(mpm_body_totals(&w, -1).momentum[a] - all.momentum[a]) / scale);
     if (n < 40) *worst = 1;
     mpm_free(&w);
 }
@@ -149,7 +149,7 @@ static void weld(void)
             if (!(least > 1e-6)) continue;
             if (least < 1e-3) light++;
             for (k = 0; k < 3; k++)
-                worst = fmax(worst, fabs((double)(p->momentum[k] / p->mass - q->momentum[k] / q->mass)) / 20);
+                worst = check_worst(worst, fabs((double)(p->momentum[k] / p->mass - q->momentum[k] / q->mass)) / 20);
         }
     CHECK_EQUAL("weld: steps", n, 100);
     CHECK_TRUE("weld: light nodes are met", light > 0);

@@ -34,7 +34,7 @@ static double angle(mpm_shape_function shape, mpm_normal_rule rule)
         for (i = 0; i < w.pairs; i++, n++) {
             const mpm_real *q = w.pair[i].normal;
             const double along = (double)q[0] * x + (double)q[1] * y + (double)q[2] * z;
-            sum += acos(along < 1 ? along : 1) * 57.29578;
+            sum += acos(along > 1 ? 1 : along) * 57.29578;
         }
         mpm_free(&w);
     }
@@ -78,8 +78,8 @@ static void flat_faces(mpm_geometry geometry, mpm_shape_function shape, const ch
         const double t = 1 + (double)w.pair[i].normal[2], g = fabs((double)w.pair[i].separation);
         if (index % nx - w.ghost > 1 || (ny > 1 && index / nx % ny - w.ghost > 1)) continue; /* covers it */
         covered++;
-        tilt = t > tilt ? t : tilt;
-        gap = g > gap ? g : gap;
+        tilt = check_worst(tilt, t);
+        gap = check_worst(gap, g);
     }
     snprintf(line, sizeof line, "flat faces, %s: normals where the top covers the node", name);
     CHECK_NEAR(line, tilt, 0, 1e4 * eps);

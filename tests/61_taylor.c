@@ -92,7 +92,7 @@ static void walls(void)
     taylor_result r;
     taylor s;
     char message[300];
-    int held;
+    int held, begun;
     c.length = 16;
     c.velocity = 20;
     c.model = "elastic";
@@ -101,7 +101,9 @@ static void walls(void)
     c.time = 20; /* a wave there and back takes 9 us at the bar speed */
     for (held = 0; held < 2; held++) {
         c.wall = held ? "sliding" : "contact";
-        if (!taylor_begin(&s, &c, message, sizeof message)) return;
+        begun = taylor_begin(&s, &c, message, sizeof message);
+        CHECK_TRUE("an elastic bar begins", begun);
+        if (!begun) return;
         while (s.world.steps < s.steps && taylor_step(&s) >= 0) {}
         taylor_measure(&s, &c, NULL, &r);
         if (!held) CHECK_NEAR("contact: an elastic bar bounces off", r.velocity / c.velocity, 1, 0.15);

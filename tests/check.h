@@ -44,6 +44,9 @@ static inline void check_equal(const char *what, long got, long wanted)
 /* a condition holds */
 #define CHECK_TRUE(what, condition) CHECK_EQUAL(what, (condition) ? 1 : 0, 1)
 
+/* The larger of two; once it is not a number it stays so, which fmax would forget. */
+static inline double check_worst(double a, double b) { return a >= b || isnan(a) ? a : b; }
+
 /* The closing line, and main's return value. */
 static inline int check_end(void)
 {

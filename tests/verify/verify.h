@@ -55,6 +55,9 @@ static inline void verify_range(const char *what, const char *source, double low
     verify_line(what, source, e, got, "range", got >= low && got <= high);
 }
 
+/* The larger of two; once it is not a number it stays so, which fmax would forget. */
+static inline double verify_worst(double a, double b) { return a >= b || isnan(a) ? a : b; }
+
 /* A measured number that nothing is claimed about. */
 static inline void verify_measured(const char *what, const char *source, double got)
 {

@@ -957,10 +957,13 @@ static inline mpm_status mpm__spray_check_contact(const mpm_spray_desc *d, mpm_f
     r[n++] = mpm__spray_rule_of("friction", d->friction, d->friction >= 0);
     r[n++] = mpm__spray_rule_of("friction_speed", d->friction_speed, d->friction_speed > 0);
     r[n++] = mpm__spray_rule_of("restitution", d->restitution, d->restitution >= 0 && d->restitution <= 1);
-    r[n++] = mpm__spray_rule_of("rebound", (mpm_real)d->rebound, d->rebound >= 0 && d->rebound <= MPM_SPRAY_REBOUND_CONSTANT);
+    r[n++] = mpm__spray_rule_of("rebound", (mpm_real)d->rebound,
+                                d->rebound >= 0 && d->rebound <= MPM_SPRAY_REBOUND_CONSTANT);
     r[n++] = mpm__spray_rule_of("contact", (mpm_real)d->contact, d->contact >= 0 && d->contact <= MPM_SPRAY_OVERLAP);
-    r[n++] = mpm__spray_rule_of("mixing", (mpm_real)d->mixing, d->mixing >= 0 && d->mixing <= MPM_SPRAY_MIXING_DIFFERENCE);
-    r[n++] = mpm__spray_rule_of("deposit", (mpm_real)d->deposit, d->deposit >= 0 && d->deposit <= MPM_SPRAY_DEPOSIT_IGNORE);
+    r[n++] = mpm__spray_rule_of("mixing", (mpm_real)d->mixing,
+                                d->mixing >= 0 && d->mixing <= MPM_SPRAY_MIXING_DIFFERENCE);
+    r[n++] = mpm__spray_rule_of("deposit", (mpm_real)d->deposit,
+                                d->deposit >= 0 && d->deposit <= MPM_SPRAY_DEPOSIT_IGNORE);
     r[n++] = mpm__spray_rule_of("gamma_target", d->gamma_target, d->gamma_target >= 0);
     r[n++] = mpm__spray_rule_of("gamma_deposit", d->gamma_deposit, d->gamma_deposit >= 0);
     return mpm__spray_judge(r, n, f);
@@ -1404,9 +1407,10 @@ static inline void mpm__spray_relax(const mpm_spray *s, const mpm_spray_ball *fr
 }
 
 /* B 42, 43 for given accelerations at both ends: writes `to`, and tells whether the relative change
-   against what was there is within the tolerance. The paper's measure (B 53) adds m/s to m, is 0/0 for a particle that did
-   not change, and its loop runs while the error is small; here velocity (against the speed) and
-   position (against the way of the step) are judged apart, and the loop runs while it is large. */
+   against what was there is within the tolerance. The paper's measure (B 53) adds m/s to m, is 0/0
+   for a particle that did not change, and its loop runs while the error is small; here velocity
+   (against the speed) and position (against the way of the step) are judged apart, and the loop runs
+   while it is large. */
 static inline int mpm__spray_theta(const mpm_spray *s, const mpm_spray_ball *from, const mpm_real *a0,
                                         const mpm_real *a1, mpm_spray_ball *to)
 {

@@ -26,7 +26,8 @@ static inline void calibration_tolerances(double cell, double spacing, double pb
     static const double table[9][6] = {
         {1.5, 0.5, 8.5, 0.0031, 8.1, 0.002},  {1.5, 0.35, 8.0, 0.003, 9.2, 0.002},   {1.5, 0.3, 8.5, 0.003, 9.2, 0.002},
         {1.0, 0.35, 6.0, 0.003, 8.1, 0.003},  {1.0, 0.25, 6.1, 0.0031, 8.3, 0.002},  {1.0, 0.2, 6.1, 0.003, 8.3, 0.002},
-        {0.7, 0.25, 4.7, 0.006, 4.9, 0.007},  {0.7, 0.175, 4.6, 0.003, 5.3, 0.0031}, {0.7, 0.15, 4.8, 0.003, 5.3, 0.0031}};
+        {0.7, 0.25, 4.7, 0.006, 4.9, 0.007},  {0.7, 0.175, 4.6, 0.003, 5.3, 0.0031},
+        {0.7, 0.15, 4.8, 0.003, 5.3, 0.0031}};
     int k, best = 0;
     double least = HUGE_VAL;
     for (k = 0; k < 9; k++) {
@@ -88,7 +89,10 @@ static inline double calibration_gdot(const calibration *q, long node)
 
 /* A number as the fit sees it. */
 static inline double calibration_x(const calibration *q, double v) { return strcmp(q->scale, "log") ? v : log10(v); }
-static inline double calibration_from(const calibration *q, double x) { return strcmp(q->scale, "log") ? x : pow(10, x); }
+static inline double calibration_from(const calibration *q, double x)
+{
+    return strcmp(q->scale, "log") ? x : pow(10, x);
+}
 
 static inline impact_case calibration_case(const calibration *q, int size, long node)
 {
@@ -228,8 +232,8 @@ static inline int calibration_run(const calibration *q, study *s, char *message,
 }
 
 /* The classes of both sizes in the plane of the parameters, with both boundaries and their crossings. */
-static inline int calibration_draw(const calibration *q, const calibration_result *r, const char *path, const char *note,
-                                   mpm_fault *fault)
+static inline int calibration_draw(const calibration *q, const calibration_result *r, const char *path,
+                                   const char *note, mpm_fault *fault)
 {
     enum { STEPS = 200 };
     static mpm_real x[2][2][CALIBRATION_NODES], y[2][2][CALIBRATION_NODES], bx[2][2 * STEPS + 1], by[2][2 * STEPS + 1];
@@ -247,7 +251,8 @@ static inline int calibration_draw(const calibration *q, const calibration_resul
                 const double x1 = calibration_x(q, q->gc[0]) +
                                   t * (calibration_x(q, q->gc[1]) - calibration_x(q, q->gc[0])) / (STEPS - 1);
                 const int at = which * (STEPS + 1) + t;
-                const int roots = r->side[size].status >= 0 ? mpm_bond_logistic_roots(&r->side[size].fit, x1, low, high, root) : 0;
+                const calibration_side *side = &r->side[size];
+                const int roots = side->status >= 0 ? mpm_bond_logistic_roots(&side->fit, x1, low, high, root) : 0;
                 bx[size][at] = (mpm_real)calibration_from(q, x1);
                 by[size][at] = (mpm_real)(which < roots ? calibration_from(q, root[which]) : nan(""));
                 bx[size][STEPS] = by[size][STEPS] = (mpm_real)nan("");

@@ -70,7 +70,10 @@ typedef struct critical_curve {
     int runs;
 } critical_curve;
 
-static inline int critical_scans(const critical_range *r) { return (int)floor((r->high - r->low) / r->scan + 1e-9) + 1; }
+static inline int critical_scans(const critical_range *r)
+{
+    return (int)floor((r->high - r->low) / r->scan + 1e-9) + 1;
+}
 
 /* Runs of one search, about. */
 static inline int critical_cost(const critical_range *r)
@@ -79,8 +82,8 @@ static inline int critical_cost(const critical_range *r)
 }
 
 /* One velocity into the curve. As study_need. */
-static inline int critical_try(study *s, impact_case c, double velocity, const critical_rule *rule, critical_curve *curve,
-                               char *message, size_t n)
+static inline int critical_try(study *s, impact_case c, double velocity, const critical_rule *rule,
+                               critical_curve *curve, char *message, size_t n)
 {
     critical_run *r = &curve->run[curve->runs];
     int status;
@@ -122,8 +125,9 @@ static inline critical_answer critical_read(const critical_curve *curve, int fir
 }
 
 /* Scans the range, then halves the gap under the lowest velocity that bonds. As study_need. */
-static inline int critical_search(study *s, const impact_case *c, const critical_range *range, const critical_rule *rule,
-                                  critical_curve *curve, critical_answer *a, char *message, size_t n)
+static inline int critical_search(study *s, const impact_case *c, const critical_range *range,
+                                  const critical_rule *rule, critical_curve *curve, critical_answer *a,
+                                  char *message, size_t n)
 {
     const int first = curve->runs, scans = critical_scans(range);
     int k, status;

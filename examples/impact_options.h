@@ -14,11 +14,14 @@ static inline int impact_options(impact_case *c, option *o)
     int n = 0;
     option_add(o, &n, "diameter", OPTION_REAL, &c->diameter, "particle diameter, um");
     option_add(o, &n, "velocity", OPTION_REAL, &c->velocity, "impact velocity, m/s");
-    option_add(o, &n, "angle", OPTION_REAL, &c->angle, "velocity from the surface normal, degrees (with symmetry half, full)");
+    option_add(o, &n, "angle", OPTION_REAL, &c->angle,
+               "velocity from the surface normal, degrees (with symmetry half, full)");
     option_add(o, &n, "shape", OPTION_TEXT, &c->shape, "of the particle: sphere|ellipsoid");
-    option_add(o, &n, "aspect", OPTION_REAL, &c->aspect, "of an ellipsoid: height over width, at the volume of the sphere");
+    option_add(o, &n, "aspect", OPTION_REAL, &c->aspect,
+               "of an ellipsoid: height over width, at the volume of the sphere");
     option_add(o, &n, "material", OPTION_TEXT, &c->material, "of the particle");
-    option_add(o, &n, "substrate-material", OPTION_TEXT, &c->substrate_material, "of the substrate; empty: as the particle");
+    option_add(o, &n, "substrate-material", OPTION_TEXT, &c->substrate_material,
+               "of the substrate; empty: as the particle");
     option_add(o, &n, "model", OPTION_TEXT, &c->model, "strength of both: preset|elastic|linear|jc|scg|ptw");
     option_add(o, &n, "temperature", OPTION_REAL, &c->temperature, "at the start, K: softens, expands nothing");
     option_add(o, &n, "substrate-temperature", OPTION_REAL, &c->substrate_temperature, "K; 0: as the particle");
@@ -29,7 +32,8 @@ static inline int impact_options(impact_case *c, option *o)
     option_add(o, &n, "time", OPTION_REAL, &c->time, "simulated time, ns");
     option_add(o, &n, "dt-factor", OPTION_REAL, &c->dt_factor, "time step over the critical step of a 0.5 um cell");
     option_add(o, &n, "bond", OPTION_TEXT, &c->bond, "energy|strain|none");
-    option_add(o, &n, "bond-average", OPTION_TEXT, &c->bond_average, "D of a node from its surface points: mean|weighted|literal");
+    option_add(o, &n, "bond-average", OPTION_TEXT, &c->bond_average,
+               "D of a node from its surface points: mean|weighted|literal");
     option_add(o, &n, "gc", OPTION_REAL, &c->gc, "critical bond energy, J/m2");
     option_add(o, &n, "gdot", OPTION_REAL, &c->gdot, "critical bond energy rate, J/m2/us");
     option_add(o, &n, "eps-c", OPTION_REAL, &c->eps_c, "strain bond: critical strain");
@@ -41,7 +45,8 @@ static inline int impact_options(impact_case *c, option *o)
     option_add(o, &n, "functions", OPTION_TEXT, &c->functions, "shape functions: linear|gimp");
     option_add(o, &n, "friction", OPTION_REAL, &c->friction, "Coulomb coefficient between the bodies");
     option_add(o, &n, "normal", OPTION_TEXT, &c->normal, "contact normal: ranked|mvg|average|vertical|logistic");
-    option_add(o, &n, "separation", OPTION_FLAG, &c->separation, "contact where the points themselves touch, not where they share a node");
+    option_add(o, &n, "separation", OPTION_FLAG, &c->separation,
+               "contact where the points themselves touch, not where they share a node");
     option_add(o, &n, "plasticity", OPTION_TEXT, &c->plasticity, "return mapping: consistent|staged");
     option_add(o, &n, "gap", OPTION_REAL, &c->gap, "distance of the bodies at the start, um");
     option_add(o, &n, "margin", OPTION_REAL, &c->margin, "free grid around the bodies, particle diameters");

@@ -67,7 +67,8 @@ static inline int particles_place(particles_case *q, double spread, double heigh
             x[2] = height * particles_draw(&state);
             for (other = 0, d2 = HUGE_VAL; other < k; other++) {
                 const double *y = q->center[other];
-                d2 = fmin(d2, (x[0] - y[0]) * (x[0] - y[0]) + (x[1] - y[1]) * (x[1] - y[1]) + (x[2] - y[2]) * (x[2] - y[2]));
+                const double dx = x[0] - y[0], dy = x[1] - y[1], dz = x[2] - y[2];
+                d2 = fmin(d2, dx * dx + dy * dy + dz * dz);
             }
         } while (d2 < apart * apart);
         least = fmin(least, x[2]);
@@ -110,8 +111,8 @@ static inline int particles_begin(impact *s, const particles_case *q, char *mess
     if (!particles_mirrored(q, message, n)) return 0;
     for (k = 0; k < q->count; k++) {
         const double *x = q->center[k], aside = fmax(fabs(x[0]), fabs(x[1])), reach = aside + q->base.diameter / 2;
-        if (!case_wants(!strcmp(q->base.geometry, "3d") || !(aside > 0), "offset", aside, "beside the axis: needs geometry 3d",
-                        message, n))
+        if (!case_wants(!strcmp(q->base.geometry, "3d") || !(aside > 0), "offset", aside,
+                        "beside the axis: needs geometry 3d", message, n))
             return 0;
         room.substrate_diameter = fmax(room.substrate_diameter, 2 * reach);
         room.gap = fmax(room.gap, x[2] - q->base.diameter / 2);
@@ -141,14 +142,21 @@ static inline int particles_begin(impact *s, const particles_case *q, char *mess
         mpm_free(&s->world);
         return 0;
     }
-    s->dt = (mpm_real)(q->base.dt_factor * 0.5) / (particle.wave_p > substrate.wave_p ? particle.wave_p : substrate.wave_p);
+    s->dt = (mpm_real)(q->base.dt_factor * 0.5) /
+            (particle.wave_p > substrate.wave_p ? particle.wave_p : substrate.wave_p);
     s->steps = (long)ceil(q->base.time * 1e-3 / (double)s->dt - 1e-9);
     s->start = mpm_body_totals(&s->world, -1);
     return 1;
 }
 
 /* What became of a particle. */
-typedef enum particle_fate { PARTICLE_ARRIVING, PARTICLE_BONDED, PARTICLE_RESTING, PARTICLE_REBOUNDED, PARTICLE_SHEARED } particle_fate;
+typedef enum particle_fate {
+    PARTICLE_ARRIVING,
+    PARTICLE_BONDED,
+    PARTICLE_RESTING,
+    PARTICLE_REBOUNDED,
+    PARTICLE_SHEARED
+} particle_fate;
 
 static const char *const particle_fate_text[5] = {"arriving", "bonded", "resting", "rebounded", "sheared off"};
 
@@ -239,7 +247,8 @@ static inline int particles_picture(const impact *s, const particles_case *q, co
     long k;
     int i;
     snprintf(time, sizeof time, "t = %.1f ns", (double)w->time * 1e3);
-    snprintf(title, sizeof title, "%ld x %s, %g um at %g m/s", q->count, q->base.material, q->base.diameter, q->base.velocity);
+    snprintf(title, sizeof title, "%ld x %s, %g um at %g m/s", q->count, q->base.material, q->base.diameter,
+             q->base.velocity);
     for (k = 0; k < q->count; k++) {
         edge = fmax(edge, fabs(q->center[k][0]) + q->base.diameter);
         top = fmax(top, q->center[k][2] + q->base.diameter / 2);
@@ -265,8 +274,8 @@ static inline int particles_picture(const impact *s, const particles_case *q, co
 }
 
 /* particles.csv, pairs.csv and summary.json. */
-static inline int particles_write(const impact *s, const particles_case *q, const particle_report *r, const option *o, int n,
-                                  double cpu, mpm_fault *fault)
+static inline int particles_write(const impact *s, const particles_case *q, const particle_report *r,
+                                  const option *o, int n, double cpu, mpm_fault *fault)
 {
     const mpm_world *w = &s->world;
     const mpm_bond_measure all = mpm_bond_measure_body(w, -1);
@@ -322,8 +331,9 @@ static inline int particles_write(const impact *s, const particles_case *q, cons
     mpm_io_json_number(&j, "time_ns", (double)w->time * 1e3);
     mpm_io_json_number(&j, "mass_error", (sums.mass - s->start.mass) / s->start.mass);
     mpm_io_json_number(&j, "energy_unaccounted",
-                       case_share(sums.kinetic + sums.internal + w->ledger.absorbed + w->ledger.contact + w->ledger.bond +
-                        w->ledger.walls - s->start.kinetic - s->start.internal, s->start.kinetic));
+                       case_share(sums.kinetic + sums.internal + w->ledger.absorbed + w->ledger.contact +
+                                      w->ledger.bond + w->ledger.walls - s->start.kinetic - s->start.internal,
+                                  s->start.kinetic));
     mpm_io_json_number(&j, "cpu_seconds", cpu);
     options_json(&j, o, n);
     return mpm_io_json_end(&j, fault) >= 0;
@@ -335,8 +345,8 @@ static inline void particles_print(const particles_case *q, const particle_repor
     long k;
     printf("\n  particle   fate          PBCP %%   bonded nodes   v_z m/s   along m/s   ejected %%\n");
     for (k = 0; k < shown; k++)
-        printf("  %8ld   %-11s   %6.2f   %12ld   %7.2f   %9.2f   %9.1f\n", k, particle_fate_text[r[k].fate], r[k].bond.pbcp,
-               r[k].nodes, r[k].v_z, r[k].v_along, 100 * r[k].ejected);
+        printf("  %8ld   %-11s   %6.2f   %12ld   %7.2f   %9.2f   %9.1f\n", k, particle_fate_text[r[k].fate],
+               r[k].bond.pbcp, r[k].nodes, r[k].v_z, r[k].v_along, 100 * r[k].ejected);
     printf("\n  PBCP of all surfaces %.2f %%; %s/particles.csv, pairs.csv, frames, summary.json\n",
            mpm_bond_measure_body(&s->world, -1).pbcp, q->folder);
 }
@@ -368,7 +378,8 @@ static inline int particles_main(const particles_case *q, const option *o, int n
             goto fail;
         }
         if (s.world.steps % 16 == 0)
-            study_progress(&progress, (double)s.world.steps / (double)s.steps, (double)(clock() - begun) / CLOCKS_PER_SEC);
+            study_progress(&progress, (double)s.world.steps / (double)s.steps,
+                           (double)(clock() - begun) / CLOCKS_PER_SEC);
     }
     study_progress_end(&progress);
     particles_report(&s, q, report);

@@ -46,7 +46,8 @@ static inline void study_complete(impact_case *c, const char *substrate)
         if (d >= size[k] && d <= size[k + 1])
             width = wide[k] + (wide[k + 1] - wide[k]) * (d - size[k]) / (size[k + 1] - size[k]);
     if (!(fabs(c->substrate_diameter) > 0)) c->substrate_diameter = strcmp(substrate, "large") ? width : 5 * d;
-    if (!(fabs(c->substrate_height) > 0)) c->substrate_height = strcmp(substrate, "large") ? 10 * d / near_size : 2.5 * d;
+    if (!(fabs(c->substrate_height) > 0))
+        c->substrate_height = strcmp(substrate, "large") ? 10 * d / near_size : 2.5 * d;
     if (!(fabs(c->time) > 0)) c->time = d > 30 ? 80 * d / 30 : 80;
 }
 
@@ -57,7 +58,8 @@ static inline void study_key(const impact_case *c, int early, char *key, size_t 
     option o[IMPACT_OPTIONS];
     char value[64];
     int k, count = impact_options(&copy, o);
-    size_t at = (size_t)snprintf(key, n, "mpm %s, %d digits, %s", MPM_VERSION, MPM_DIGITS, early ? "early end" : "full time");
+    size_t at = (size_t)snprintf(key, n, "mpm %s, %d digits, %s", MPM_VERSION, MPM_DIGITS,
+                                 early ? "early end" : "full time");
     for (k = 0; k < count && at < n; k++) {
         option_text(&o[k], value, sizeof value);
         at += (size_t)snprintf(key + at, n - at, ", %s %s", o[k].name, value);
@@ -83,7 +85,7 @@ enum {
     STUDY_T_MAX,      /* K */
     STUDY_EJECTED,    /* share of the particle's mass faster than 60 m/s */
     STUDY_JET,        /* share of the particle's mass further than 1.5 initial radii from its axis */
-    STUDY_R_CONTACT,  /* median distance from the axis of the particle's points with D > 0, um: half their mass lies within */
+    STUDY_R_CONTACT,  /* median distance from the axis of the particle's points with D > 0, um */
     STUDY_R_BONDED,   /* ... with D >= 1; 0 without any */
     STUDY_UNACCOUNTED, /* energy, of the initial */
     STUDY_END,        /* ns simulated */
@@ -96,7 +98,8 @@ enum {
 static const char *const study_name[STUDY_VALUES] = {
     "pbcp_percent", "abp", "contacted_points", "v_rest_m_s", "v_mean_m_s", "v_late_m_s", "substrate_drift_m_s",
     "held_pairs", "held_late_share", "flattening", "eps_mean", "plastic_energy_density_MPa", "temperature_max_K",
-    "ejected_mass_share", "jet_mass_share", "contact_radius_um", "bonded_radius_um", "energy_unaccounted", "end_ns", "steps", "points", "cpu_s"};
+    "ejected_mass_share", "jet_mass_share", "contact_radius_um", "bonded_radius_um", "energy_unaccounted",
+    "end_ns", "steps", "points", "cpu_s"};
 
 /* A study under way: where finished runs are kept, and what the progress line needs. */
 typedef struct study {
@@ -130,7 +133,8 @@ static inline void study_progress(study *s, double part, double seconds)
     s->shown = now;
     if (left < 0) left = 0;
     snprintf(line, sizeof line, "run %ld of %ld, %s, %.0f %%, left %.0f:%02d", s->done + 1,
-             s->planned > s->done ? s->planned : s->done + 1, s->label, 100 * part, floor(left / 60), (int)fmod(left, 60));
+             s->planned > s->done ? s->planned : s->done + 1, s->label, 100 * part, floor(left / 60),
+             (int)fmod(left, 60));
     fprintf(stderr, "\r%-100s", line);
     fflush(stderr);
 }
@@ -174,7 +178,8 @@ static inline double study_within(const mpm_world *w, double radius, double floo
     double mass = 0;
     int32_t i;
     for (i = b->first; i < b->first + b->count; i++)
-        if (study_radius(w, i) <= radius && (!(floor > 0) || ((p->flags[i] & MPM_SURFACE) && (double)p->bond[i] >= floor)))
+        if (study_radius(w, i) <= radius &&
+            (!(floor > 0) || ((p->flags[i] & MPM_SURFACE) && (double)p->bond[i] >= floor)))
             mass += (double)p->mass[i];
     return mass;
 }

@@ -163,15 +163,16 @@ MPM_API mpm_bond_measure mpm_bond_measure_body(const mpm_world *w, int32_t body)
 MPM_API mpm_status mpm_bond_measure_pair(const mpm_bond *rule, const mpm_world *w, int32_t a, int32_t b,
                                          mpm_bond_measure *measure);
 
-/* The interface between two bodies as the grid sees it: the nodes where both have mass, in the last step.
+/* The interface between two bodies as the grid sees it: the nodes where both weigh enough for contact
+   (contact_cutoff of the description), in the last step.
    The area of a node is the smaller of the bodies' surfaces there, |sum m grad N . n| / initial density:
    the deformed surface, gaps below a cell included. In a quarter model it is a quarter. */
 typedef struct mpm_interface {
-    long nodes;               /* nodes where both bodies have mass */
+    long nodes;               /* such nodes */
     long bonded;              /* ... whose D is 1 or more */
     long held;                /* ... where the bond gave force in the last step */
     double area, bonded_area; /* [length^2] */
-    double impulse[3];        /* momentum that a got from b in the last step */
+    double impulse[3];        /* momentum that a got from b in the last step [mass length/time] */
 } mpm_interface;
 
 /* Between body a and body b (-1: all others). Until the next mpm_locate. Test: 30_bond. */

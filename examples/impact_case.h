@@ -104,8 +104,8 @@ static inline int impact_fits(const impact_case *c, char *m, size_t n)
     const double layers = fmax(c->substrate_height, high) / c->spacing + 1;
     return case_wants((rings ? 1 : across) * across * tall < 2e9, "cell", c->cell,
                         "makes a grid of more than 2e9 cells", m, n) &&
-           case_wants((rings ? 1 : row) * row * layers < 2e9, "spacing", c->spacing,
-                        "makes more than 2e9 points", m, n);
+           case_wants((rings ? 1 : row) * row * layers < 1e9, "spacing", c->spacing,
+                        "makes more than 1e9 points", m, n);
 }
 
 /* Checks what the library cannot know. Returns 1, or 0 with a message. */

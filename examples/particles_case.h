@@ -109,6 +109,9 @@ static inline int particles_begin(impact *s, const particles_case *q, char *mess
     memset(s, 0, sizeof *s);
     if (!impact_check(&q->base, message, n)) return 0;
     if (!particles_mirrored(q, message, n)) return 0;
+    if (!case_wants((double)q->count * pow(q->base.diameter / q->base.spacing, 3) < 1e9, "count", (double)q->count,
+                    "makes more than 1e9 points", message, n))
+        return 0;
     for (k = 0; k < q->count; k++) {
         const double *x = q->center[k], aside = fmax(fabs(x[0]), fabs(x[1])), reach = aside + q->base.diameter / 2;
         if (!case_wants(!strcmp(q->base.geometry, "3d") || !(aside > 0), "offset", aside,

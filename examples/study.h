@@ -277,7 +277,7 @@ static inline void study_path(const study *s, const char *key, char *path, size_
 /* Reads a finished run. Returns 1 if it is there, whole and of this very case. */
 static inline int study_find(const study *s, const impact_case *c, double *value)
 {
-    char key[1200], path[MPM_IO_PATH], text[4000], quoted[80];
+    char key[1200], path[MPM_IO_PATH], text[4000], quoted[80], *end;
     size_t n;
     FILE *f;
     int k;
@@ -294,7 +294,9 @@ static inline int study_find(const study *s, const impact_case *c, double *value
         snprintf(quoted, sizeof quoted, "\"%s\":", study_name[k]);
         at = strstr(text, quoted);
         if (!at) return 0;
-        value[k] = strtod(at + strlen(quoted), NULL);
+        at += strlen(quoted);
+        value[k] = strtod(at, &end);
+        if (end == at) value[k] = NAN; /* null */
     }
     return 1;
 }

@@ -199,6 +199,7 @@ static impact hertz(ground on, int n, double v)
     start = mean_velocity(&w, 0, 2);
     while ((double)w.time < 1.5 * cell / v + 1.3 * 2.943 * depth / v && last < MOMENTS && advance(&w, dt) >= 0)
         history[last++] = mean_velocity(&w, 0, 2) - start;
+    if (last == 0) history[last++] = NAN; /* it failed: so do the rows */
     for (i = 0; i < last; i++) {
         part = history[i] / history[last - 1];
         if (part < 0.001) first = dt * (i + 1);

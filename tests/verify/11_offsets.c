@@ -79,10 +79,10 @@ int main(void)
                 c.separation = s;
                 if (!combination(c)) return 1;
             }
-    verify_remark("\nContact where the points touch brings the scatter of the rebound down in every pair of rows, with GIMP and "
-                  "logistic normals to less than a quarter of that of source A's choices (first row). It also ends the early "
+    verify_remark("\nContact where the points touch brings the scatter of the rebound down in seven of eight pairs of rows, with GIMP "
+                  "and logistic normals to less than a quarter of that of source A's choices (first row). It also ends the early "
                   "contact across a gap that D feeds on: with it the pair G_c, Gdot_c of source A hardly bonds and would have "
                   "to be calibrated anew. The noise within the particle is the same everywhere: it is carried by the points, "
-                  "which neither functions nor normals damp, and falls with the spacing alone.");
+                  "which neither functions nor normals damp; at 0.7/0.175 um it is 14 - 17 m/s.");
     return verify_end();
 }

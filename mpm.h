@@ -438,7 +438,7 @@ typedef struct mpm_world {
     int32_t runs, run_capacity, sorted_runs;
     mpm_pair *pair;
     int32_t pairs, pair_capacity, pairs_possible;
-    mpm_plane *plane;        /* per pair, with MPM_NORMAL_LOGISTIC */
+    mpm_plane *plane;        /* per pair, if mpm_init saw MPM_NORMAL_LOGISTIC; else NULL, and normals are ranked */
     int32_t *key, *order;    /* per point: base node; permutation */
     mpm_real *field;         /* all real point arrays: field f at field + f * stride */
     mpm_real *scratch;       /* one array more */
@@ -2231,7 +2231,7 @@ MPM_API void mpm_contact_find(mpm_world *w)
         mpm__constrain(w, &w->node[pair->b], w->node[pair->b].gradient, NULL);
         mpm__pair_normal(w, pair);
     }
-    if (w->desc.normal == MPM_NORMAL_LOGISTIC) mpm__plane_normals(w);
+    if (w->desc.normal == MPM_NORMAL_LOGISTIC && w->plane) mpm__plane_normals(w);
     if (w->desc.separation) mpm__separations(w);
 }
 

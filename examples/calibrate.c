@@ -30,8 +30,8 @@ static int list(const calibration *q, const study *s)
         calibration_look(q, s, size, &map);
         for (k = 0; k < calibration_nodes(q); k++)
             if (map.wanted[k] && map.bonds[k] < 0)
-                printf("%ld  %g um at %g m/s, G_c %.6g, Gdot_c %.6g\n", size * calibration_nodes(q) + k, q->diameter[size],
-                       q->velocity[size], calibration_gc(q, k), calibration_gdot(q, k));
+                printf("%ld  %g um at %g m/s, G_c %.6g, Gdot_c %.6g\n", size * calibration_nodes(q) + k,
+                       q->diameter[size], q->velocity[size], calibration_gc(q, k), calibration_gdot(q, k));
     }
     return 0;
 }
@@ -110,8 +110,8 @@ static void print_result(const calibration *q, const calibration_result *r, cons
     printf("\n");
     for (k = 0; k < 2; k++) {
         const calibration_side *side = &r->side[k];
-        printf("  %g um at %g m/s: %ld of %ld runs bonded, %s", q->diameter[k], q->velocity[k], side->bonded, side->tests,
-               side->status < 0 ? "no boundary: one class only\n" : "");
+        printf("  %g um at %g m/s: %ld of %ld runs bonded, %s", q->diameter[k], q->velocity[k], side->bonded,
+               side->tests, side->status < 0 ? "no boundary: one class only\n" : "");
         if (side->status >= 0) printf("%ld on the wrong side of the fitted boundary\n", side->fit.wrong);
     }
     for (k = 0; k < r->points; k++)
@@ -150,12 +150,13 @@ static int check(const calibration *q, char *m, size_t n)
           case_wants(q->gc[0] > 0, "gc-low", q->gc[0], "must be > 0 J/m2", m, n) &&
           case_wants(q->gc[1] > q->gc[0] && q->gc[1] < 1e30, "gc-high", q->gc[1], "must be over --gc-low", m, n) &&
           case_wants(q->gdot[0] > 0, "gdot-low", q->gdot[0], "must be > 0 J/m2/us", m, n) &&
-          case_wants(q->gdot[1] > q->gdot[0] && q->gdot[1] < 1e30, "gdot-high", q->gdot[1], "must be over --gdot-low", m, n) &&
+          case_wants(q->gdot[1] > q->gdot[0] && q->gdot[1] < 1e30, "gdot-high", q->gdot[1], "must be over --gdot-low",
+                     m, n) &&
           case_wants(q->columns >= 5, "columns", (double)q->columns, "must be 5 or more", m, n) &&
           case_wants(q->rows >= 5, "rows", (double)q->rows, "must be 5 or more", m, n) &&
           case_wants(q->columns < CALIBRATION_NODES && q->rows < CALIBRATION_NODES &&
-                       calibration_nodes(q) <= CALIBRATION_NODES, "columns", (double)q->columns,
-                       "makes more than 4000 pairs", m, n) &&
+                         calibration_nodes(q) <= CALIBRATION_NODES,
+                     "columns", (double)q->columns, "makes more than 4000 pairs", m, n) &&
           case_wants(q->stays > 0, "stays", q->stays, "must be > 0 m/s", m, n)))
         return 0;
     for (k = 0; k < 2; k++)
@@ -200,7 +201,8 @@ int main(int argc, char **argv)
     option_add(o, &n, "rule", OPTION_TEXT, &q.rule, "thesis|stays: what counts as bonded, see critical_velocity");
     option_add(o, &n, "pbcp-1", OPTION_REAL, &q.pbcp[0], "rule thesis: least PBCP, %; 0: source A's for the grid");
     option_add(o, &n, "pbcp-2", OPTION_REAL, &q.pbcp[1], "");
-    option_add(o, &n, "restitution-1", OPTION_REAL, &q.restitution[0], "rule thesis: highest rebound ratio; 0: source A's");
+    option_add(o, &n, "restitution-1", OPTION_REAL, &q.restitution[0],
+               "rule thesis: highest rebound ratio; 0: source A's");
     option_add(o, &n, "restitution-2", OPTION_REAL, &q.restitution[1], "");
     option_add(o, &n, "stays", OPTION_REAL, &q.stays, "rule stays: the late mean velocity is below, m/s");
     option_add(o, &n, "whole-time", OPTION_FLAG, &whole, "do not end a run early when the particle has left");
@@ -210,8 +212,11 @@ int main(int argc, char **argv)
     option_add(o, &n, "collect", OPTION_FLAG, &collecting, "fit and draw what is done, run nothing");
     option_add(o, &n, "out", OPTION_TEXT, &s.folder, "output folder");
     option_add(o, &n, "quiet", OPTION_FLAG, &s.quiet, "no progress line, no table");
-    parsed = options_parse(argc, argv, "The bond parameters at which two sizes just bond: sweep, boundaries, crossing.\n"
-                           "Writes tasks.csv, classes.png and summary.json; run again after an interruption, it goes on.", o, n);
+    parsed =
+        options_parse(argc, argv,
+                      "The bond parameters at which two sizes just bond: sweep, boundaries, crossing.\n"
+                      "Writes tasks.csv, classes.png and summary.json; run again after an interruption, it goes on.",
+                      o, n);
     if (parsed) return parsed < 0;
     if (!check(&q, message, sizeof message)) return fail(message);
     calibration_tolerances(q.base.cell, q.base.spacing, q.pbcp, q.restitution);

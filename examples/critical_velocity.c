@@ -131,13 +131,13 @@ static void print_answers(const impact_case *c, const request *q, const critical
     printf("  grid offset um   critical m/s   not below   PBCP %%   rebound m/s   not bonded above\n");
     for (k = 0; k < q->offsets; k++) {
         if (a[k].velocity < HUGE_VAL)
-            printf("  %14.4g   %12.4g   %9.4g   %6.2f   %11.3f   %16d\n", a[k].offset, a[k].velocity, a[k].below, a[k].pbcp,
-                   a[k].v_rest, a[k].lost);
+            printf("  %14.4g   %12.4g   %9.4g   %6.2f   %11.3f   %16d\n", a[k].offset, a[k].velocity, a[k].below,
+                   a[k].pbcp, a[k].v_rest, a[k].lost);
         else
             printf("  %14.4g   none up to %g\n", a[k].offset, q->range.high);
     }
-    printf("\n  median %.4g m/s, lowest %.4g, highest %.4g; %s/curve.csv, curve.png, summary.json\n", s->median, s->lowest,
-           s->highest, q->folder);
+    printf("\n  median %.4g m/s, lowest %.4g, highest %.4g; %s/curve.csv, curve.png, summary.json\n", s->median,
+           s->lowest, s->highest, q->folder);
 }
 
 /* Refuses what makes no search. */
@@ -145,19 +145,20 @@ static int check(const request *q, const impact_case *c, char *m, size_t n)
 {
     return impact_check(c, m, n) && case_knows("thesis|stays", "rule", q->rule.name, m, n) &&
            case_knows("thesis|large", "substrate", q->substrate, m, n) &&
-           case_wants(q->offsets >= 1 && q->offsets <= OFFSETS, "offsets", (double)q->offsets, "must be 1 .. 32", m, n) &&
+           case_wants(q->offsets >= 1 && q->offsets <= OFFSETS, "offsets", (double)q->offsets, "must be 1 .. 32", m,
+                      n) &&
            case_wants(q->rule.pbcp >= 0, "pbcp", q->rule.pbcp, "must be >= 0 %", m, n) &&
            case_wants(q->rule.v_rest >= 0, "v-rest", q->rule.v_rest, "must be >= 0 m/s", m, n) &&
            case_wants(q->rule.stays > 0, "stays", q->rule.stays, "must be > 0 m/s", m, n) &&
            case_wants(q->range.low > 0, "low", q->range.low, "must be > 0 m/s", m, n) &&
            case_wants(q->range.high >= q->range.low && q->range.high < 1e5, "high", q->range.high,
-                        "must not be under --low", m, n) &&
+                      "must not be under --low", m, n) &&
            case_wants(q->range.step >= 1e-6, "step", q->range.step, "must be 1e-6 m/s or more", m, n) &&
            case_wants(q->range.scan >= q->range.step && q->range.scan < 1e5, "scan", q->range.scan,
-                        "must be in [--step, 1e5) m/s", m, n) &&
+                      "must be in [--step, 1e5) m/s", m, n) &&
            case_wants((q->range.high - q->range.low) / q->range.scan < CRITICAL_RUNS &&
-                      critical_cost(&q->range) * q->offsets <= CRITICAL_RUNS, "scan", q->range.scan,
-                        "makes more than 2000 runs", m, n);
+                          critical_cost(&q->range) * q->offsets <= CRITICAL_RUNS,
+                      "scan", q->range.scan, "makes more than 2000 runs", m, n);
 }
 
 int main(int argc, char **argv)

@@ -22,12 +22,16 @@ int main(int argc, char **argv)
     option_add(o, &n, "spread", OPTION_REAL, &spread, "width of the region of their centres, um");
     option_add(o, &n, "height", OPTION_REAL, &height, "of that region, um; 0: particles fill a fifth of it");
     option_add(o, &n, "seed", OPTION_LONG, &seed, "of the places");
-    parsed = options_parse(argc, argv, "Particles at random places and heights. --substrate-diameter 0: spread and one diameter;\n"
+    parsed = options_parse(argc, argv,
+                           "Particles at random places and heights. --substrate-diameter 0: spread and one diameter;\n"
                            "--time 0: the fall from the full height and 40 ns. Writes particles.csv, pairs.csv,\n"
-                           "summary.json and frames.", o, n);
+                           "summary.json and frames.",
+                           o, n);
     if (parsed) return parsed < 0;
-    if (!case_wants(q.count >= 1 && q.count <= PARTICLES, "count", (double)q.count, "must be 1 .. 500", message, sizeof message) ||
-        !case_wants(q.frames >= 0 && q.frames < 10000, "frames", (double)q.frames, "must be 0 .. 9999", message, sizeof message) ||
+    if (!case_wants(q.count >= 1 && q.count <= PARTICLES, "count", (double)q.count, "must be 1 .. 500", message,
+                    sizeof message) ||
+        !case_wants(q.frames >= 0 && q.frames < 10000, "frames", (double)q.frames, "must be 0 .. 9999", message,
+                    sizeof message) ||
         !case_wants(spread > 0 && spread < 1e4, "spread", spread, "must be > 0 um", message, sizeof message) ||
         !case_wants(height >= 0 && height < 1e4, "height", height, "must be >= 0 um", message, sizeof message) ||
         !case_wants(q.base.velocity > 0, "velocity", q.base.velocity, "must be > 0 m/s", message, sizeof message))

@@ -20,7 +20,8 @@ int main(int argc, char **argv)
     parsed = options_parse(argc, argv, "Two particles, one after the other, on one spot or beside it.\n"
                            "Writes particles.csv, pairs.csv, summary.json and frames.", o, n);
     if (parsed) return parsed < 0;
-    if (!case_wants(q.frames >= 0 && q.frames < 10000, "frames", (double)q.frames, "must be 0 .. 9999", message, sizeof message) ||
+    if (!case_wants(q.frames >= 0 && q.frames < 10000, "frames", (double)q.frames, "must be 0 .. 9999", message,
+                    sizeof message) ||
         !case_wants(fabs(offset) < 1e3, "offset", offset, "must be a length in um", message, sizeof message) ||
         !case_wants(height > 0 && height < 1e4, "height", height, "must be > 0 um", message, sizeof message))
         return fprintf(stderr, "error: %s\n", message), 1;

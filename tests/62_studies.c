@@ -106,8 +106,9 @@ static void critical(void)
 
 static void calibration(void)
 {
-    const char *sweep = "calibrate " COARSE "--time 12 --columns 6 --rows 5 --diameter-2 16 --gc-low 200 --gc-high 4000 "
-                        "--pbcp-1 10 --pbcp-2 10 --restitution-1 1 --restitution-2 1 --quiet --out " FOLDER "/calibrate ";
+    const char *sweep =
+        "calibrate " COARSE "--time 12 --columns 6 --rows 5 --diameter-2 16 --gc-low 200 --gc-high 4000 "
+        "--pbcp-1 10 --pbcp-2 10 --restitution-1 1 --restitution-2 1 --quiet --out " FOLDER "/calibrate ";
     const char *summary = FOLDER "/calibrate/summary.json";
     char command[700];
     int tasks;
@@ -146,16 +147,19 @@ static void calibration(void)
 
 static void particles(void)
 {
-    const char *grid = "--cell 2 --spacing 1 --substrate-diameter 24 --substrate-height 6 --margin 0.5 --quiet --frames 1 --out " FOLDER;
+    const char *grid = "--cell 2 --spacing 1 --substrate-diameter 24 --substrate-height 6 --margin 0.5 --quiet "
+                       "--frames 1 --out " FOLDER;
     char command[600], text[4000];
     snprintf(command, sizeof command, "two_particles %s/two --time 16 --height 22 --offset 3", grid);
     CHECK_EQUAL("a second particle", run(command), 0);
     CHECK_NEAR("mass", number_in(FOLDER "/two/summary.json", "mass_error"), 0, 1e-14);
     CHECK_TRUE("both are in the report", contents(FOLDER "/two/particles.csv", text, sizeof text) && lines(text) == 4);
     CHECK_TRUE("the first touched the substrate, the second the first",
-               contents(FOLDER "/two/pairs.csv", text, sizeof text) && strstr(text, "\n0,2,") && strstr(text, "\n0,1,"));
+               contents(FOLDER "/two/pairs.csv", text, sizeof text) && strstr(text, "\n0,2,") &&
+                   strstr(text, "\n0,1,"));
     CHECK_TRUE("a picture", contents(FOLDER "/two/frame_0000.png", text, sizeof text) > 1000);
-    snprintf(command, sizeof command, "many_particles %s/many --count 3 --spread 20 --height 30 --seed 7 --time 2", grid);
+    snprintf(command, sizeof command, "many_particles %s/many --count 3 --spread 20 --height 30 --seed 7 --time 2",
+             grid);
     CHECK_EQUAL("three particles", run(command), 0);
     CHECK_EQUAL("... counted", number_in(FOLDER "/many/summary.json", "particles"), 3);
     CHECK_TRUE("... of which two arrive later", number_in(FOLDER "/many/summary.json", "arriving") >= 2);
@@ -176,12 +180,15 @@ static void particles(void)
 /* The page keeps what others wrote; a part that was cut off goes on. */
 static void reproduction(void)
 {
-    const char *site = "reproduction --quiet --only site --limit 1 --out " FOLDER "/again --data " FOLDER "/data --page " FOLDER "/page.md";
+    const char *site = "reproduction --quiet --only site --limit 1 --out " FOLDER "/again --data " FOLDER
+                       "/data --page " FOLDER "/page.md";
     char text[4000];
     FILE *f = fopen(FOLDER "/page.md", "wb");
     int made;
     if (f) {
-        fputs("before\n<!-- made by build/reproduction: begin -->\nold\n<!-- made by build/reproduction: end -->\nbehind\n", f);
+        fputs("before\n<!-- made by build/reproduction: begin -->\nold\n<!-- made by build/reproduction: end "
+              "-->\nbehind\n",
+              f);
         fclose(f);
     }
     CHECK_EQUAL("a reproduction stopped after one run", run(site), 1);
@@ -191,7 +198,8 @@ static void reproduction(void)
     contents(FOLDER ".out", text, sizeof text);
     made = (int)strtol(text, NULL, 10);
     CHECK_EQUAL("the next one makes the second run", made, 2);
-    CHECK_EQUAL("no part at all", run("reproduction --quiet --only nothing --data " FOLDER "/data --page " FOLDER "/page.md"), 0);
+    CHECK_EQUAL("no part at all",
+                run("reproduction --quiet --only nothing --data " FOLDER "/data --page " FOLDER "/page.md"), 0);
     contents(FOLDER "/page.md", text, sizeof text);
     CHECK_TRUE("... replaces what stood between the marks", !strstr(text, "\nold\n") && strstr(text, "BUDGET=quick"));
     CHECK_TRUE("... and keeps the rest", !strncmp(text, "before\n<!--", 11) && strstr(text, "end -->\nbehind\n"));

@@ -101,10 +101,14 @@ static int convergence(work *w)
     w->s.early = 0;
     w->s.planned = w->s.done + count;
     mpm_io_csv_begin(&t, data_file(w, "convergence.csv", path, sizeof path),
-                     "cell_um,spacing_um,eps_mean,plastic_energy_density_MPa,flattening,points,steps", "A-conv", &w->fault);
-    say(w, "### A-conv: grids without bonding\n\n14 um at 810 m/s, frictionless, no bond, axisymmetric, time step factor 0.05, after "
-           "80 ns. Source A (figures): the mean plastic strain depends strongly on the cell, hardly on the spacing; the mean "
-           "plastic energy density much less.\n\n| cell/spacing, um | mean plastic strain | plastic energy density, MPa | points |\n|---|---|---|---|\n");
+                     "cell_um,spacing_um,eps_mean,plastic_energy_density_MPa,flattening,points,steps", "A-conv",
+                     &w->fault);
+    say(w, "### A-conv: grids without bonding\n\n14 um at 810 m/s, frictionless, no bond, axisymmetric, time step "
+           "factor 0.05, after "
+           "80 ns. Source A (figures): the mean plastic strain depends strongly on the cell, hardly on the spacing; "
+           "the mean "
+           "plastic energy density much less.\n\n| cell/spacing, um | mean plastic strain | plastic energy density, "
+           "MPa | points |\n|---|---|---|---|\n");
     for (k = 0; k < count; k++) {
         impact_case c = study_case_default();
         c.cell = grids[k].cell;
@@ -123,14 +127,17 @@ static int convergence(work *w)
         mpm_io_csv_real(&t, (mpm_real)value[STUDY_FLATTENING]);
         mpm_io_csv_integer(&t, (long)value[STUDY_POINTS]);
         mpm_io_csv_integer(&t, (long)value[STUDY_STEPS]);
-        say(w, "| %.3g/%.3g | %.4f | %.1f | %.0f |\n", c.cell, c.spacing, value[STUDY_EPS], value[STUDY_WORK], value[STUDY_POINTS]);
+        say(w, "| %.3g/%.3g | %.4f | %.1f | %.0f |\n", c.cell, c.spacing, value[STUDY_EPS], value[STUDY_WORK],
+            value[STUDY_POINTS]);
         for (v = 0; v < 2; v++) {
             low[v] = fmin(low[v], value[v ? STUDY_WORK : STUDY_EPS]);
             high[v] = fmax(high[v], value[v ? STUDY_WORK : STUDY_EPS]);
         }
         cpu += value[STUDY_CPU];
     }
-    say(w, "\nFrom the lowest to the highest of these grids: strain %+.1f %%, energy density %+.1f %%. Cost: %.0f CPU s.\n\n",
+    say(w,
+        "\nFrom the lowest to the highest of these grids: strain %+.1f %%, energy density %+.1f %%. Cost: %.0f CPU "
+        "s.\n\n",
         100 * (high[0] / low[0] - 1), 100 * (high[1] / low[1] - 1), cpu);
     return mpm_io_csv_end(&t, &w->fault) >= 0 || failed(w);
 }
@@ -147,8 +154,10 @@ static int time_steps(work *w)
     int k, status;
     w->s.early = 1;
     w->s.planned = w->s.done + 4 * critical_cost(&range);
-    say(w, "### A-dt: time step\n\nCritical velocity of 14 um, rule of source A, one grid position. Source A: factors up to 0.2 show no "
-           "visible difference in the calibration boundary.\n\n| factor | cell/spacing, um | critical velocity, m/s | bracket from | PBCP, %% |\n"
+    say(w, "### A-dt: time step\n\nCritical velocity of 14 um, rule of source A, one grid position. Source A: factors "
+           "up to 0.2 show no "
+           "visible difference in the calibration boundary.\n\n| factor | cell/spacing, um | critical velocity, m/s | "
+           "bracket from | PBCP, %% |\n"
            "|---|---|---|---|---|\n");
     for (k = 0; k < 4; k++) {
         impact_case c = study_case_default();
@@ -176,7 +185,8 @@ static int jets(work *w)
     int k, status;
     w->s.early = 0;
     w->s.planned = w->s.done + 2;
-    say(w, "### A-jet: below and above the critical velocity\n\n| impact | source A | mass beyond 1.5 radii of the axis, %% | faster than 60 m/s, %% | mean velocity at the "
+    say(w, "### A-jet: below and above the critical velocity\n\n| impact | source A | mass beyond 1.5 radii of the "
+           "axis, %% | faster than 60 m/s, %% | mean velocity at the "
            "end, m/s | PBCP, %% | flattening | cell/spacing, um | CPU s |\n|---|---|---|---|---|---|---|---|---|\n");
     for (k = 0; k < 2; k++) {
         impact_case c = study_case_default();
@@ -186,8 +196,9 @@ static int jets(work *w)
         if (w->budget == FULL) c.cell = 0.7, c.spacing = 0.175;
         study_complete(&c, "thesis");
         if ((status = study_need(&w->s, &c, value, w->message, sizeof w->message)) <= 0) return status;
-        say(w, "| %g um at %g m/s | %s | %.2f | %.1f | %.2f | %.2f | %.3f | %.3g/%.3g | %.0f |\n", size[k], speed[k], said[k], 100 * value[STUDY_JET],
-            100 * value[STUDY_EJECTED], value[STUDY_V_LATE], value[STUDY_PBCP], value[STUDY_FLATTENING], c.cell, c.spacing, value[STUDY_CPU]);
+        say(w, "| %g um at %g m/s | %s | %.2f | %.1f | %.2f | %.2f | %.3f | %.3g/%.3g | %.0f |\n", size[k], speed[k],
+            said[k], 100 * value[STUDY_JET], 100 * value[STUDY_EJECTED], value[STUDY_V_LATE], value[STUDY_PBCP],
+            value[STUDY_FLATTENING], c.cell, c.spacing, value[STUDY_CPU]);
     }
     say(w, "\n");
     return 1;
@@ -263,10 +274,10 @@ static int critical_row(work *w, mpm_io_csv *t, int size, grid g, const char *ru
     mpm_io_csv_real(t, (mpm_real)c.gdot);
     mpm_io_csv_text(t, rule_name);
     if (out->median < HUGE_VAL) snprintf(difference, sizeof difference, "%+.0f", out->median - said_critical[size]);
-    say(w, "| %g | %s | %.3g/%.3g | %.0f | %s | %s | %s - %s | %.2f | %d | %.0f |\n", sizes[size], rule_name, g.cell, g.spacing,
-        said_critical[size], velocity_text(out->median, range.high, middle, sizeof middle), difference,
-        velocity_text(out->lowest, range.high, low, sizeof low), velocity_text(out->highest, range.high, high, sizeof high),
-        out->middle.pbcp, lost, cpu);
+    say(w, "| %g | %s | %.3g/%.3g | %.0f | %s | %s | %s - %s | %.2f | %d | %.0f |\n", sizes[size], rule_name, g.cell,
+        g.spacing, said_critical[size], velocity_text(out->median, range.high, middle, sizeof middle), difference,
+        velocity_text(out->lowest, range.high, low, sizeof low),
+        velocity_text(out->highest, range.high, high, sizeof high), out->middle.pbcp, lost, cpu);
     return 1;
 }
 
@@ -298,7 +309,8 @@ static int critical_plot(work *w, mpm_real ours[][SIZES], const grid *grids, int
     d.title = "critical velocity, rule of source A";
     d.x_label = "particle diameter, um";
     d.y_label = "m/s";
-    return study_plots(data_file(w, "critical_velocity.png", path, sizeof path), &d, 1, 1, "A-crit", &w->fault) || failed(w);
+    return study_plots(data_file(w, "critical_velocity.png", path, sizeof path), &d, 1, 1, "A-crit", &w->fault) ||
+           failed(w);
 }
 
 static int critical(work *w)
@@ -315,15 +327,25 @@ static int critical(work *w)
     int g, r, k, status;
     w->s.early = 1;
     mpm_io_csv_begin(&t, data_file(w, "critical_velocity.csv", path, sizeof path),
-                     "diameter_um,critical_velocity_m_s,lowest_m_s,highest_m_s,offsets,pbcp_percent,v_rest_m_s,cell_um,spacing_um,geometry,"
-                     "substrate_diameter_um,substrate_height_um,gc,gdot,rule", "A-crit", &w->fault);
-    say(w, "### A-crit: critical velocity\n\nG_c 1503.74 J/m2, Gdot_c 2.271e5 J/(m2 us), not recalibrated here; axisymmetric, source A's "
-           "substrates, time step factor 0.2, %d positions of the grid in the cell. Median and extremes of the lowest velocity that bonds, "
-           "between %.0f and %.0f m/s to %.0f m/s. Rule \"thesis\": PBCP at least 5.0 %% and rebound at most 0.6 m/s, 4.8 %% and 0.9 m/s at 14 um, relative to the "
-           "substrate; \"stays\": late mean velocity under 2 m/s and the bond at work. \"Not above\": tested velocities above the "
-           "critical one that do not bond, all positions together. Source A ran one position at 0.7/0.175. Experiment: 810 m/s (14 um), 770 (30 um).\n\n"
-           "| um | rule | cell/spacing, um | source A | here | difference | lowest - highest | PBCP, %% | not above | CPU s |\n"
-           "|---|---|---|---|---|---|---|---|---|---|\n", offsets, range.low, range.high, range.step);
+                     "diameter_um,critical_velocity_m_s,lowest_m_s,highest_m_s,offsets,pbcp_percent,v_rest_m_s,cell_um,"
+                     "spacing_um,geometry,"
+                     "substrate_diameter_um,substrate_height_um,gc,gdot,rule",
+                     "A-crit", &w->fault);
+    say(w,
+        "### A-crit: critical velocity\n\nG_c 1503.74 J/m2, Gdot_c 2.271e5 J/(m2 us), not recalibrated here; "
+        "axisymmetric, source A's "
+        "substrates, time step factor 0.2, %d positions of the grid in the cell. Median and extremes of the lowest "
+        "velocity that bonds, "
+        "between %.0f and %.0f m/s to %.0f m/s. Rule \"thesis\": PBCP at least 5.0 %% and rebound at most 0.6 m/s, 4.8 "
+        "%% and 0.9 m/s at 14 um, relative to the "
+        "substrate; \"stays\": late mean velocity under 2 m/s and the bond at work. \"Not above\": tested velocities "
+        "above the "
+        "critical one that do not bond, all positions together. Source A ran one position at 0.7/0.175. Experiment: "
+        "810 m/s (14 um), 770 (30 um).\n\n"
+        "| um | rule | cell/spacing, um | source A | here | difference | lowest - highest | PBCP, %% | not above | CPU "
+        "s |\n"
+        "|---|---|---|---|---|---|---|---|---|---|\n",
+        offsets, range.low, range.high, range.step);
     for (g = first; g < count; g++)
         for (r = 0; r < 2; r++)
             for (k = 0; k < SIZES; k++) {
@@ -369,10 +391,14 @@ static int scatter(work *w)
     w->s.early = 1;
     w->s.planned = w->s.done + rows * offsets * critical_cost(&range);
     mpm_io_csv_begin(&t, data_file(w, "scatter.csv", path, sizeof path),
-                     "choice,critical_velocity_m_s,lowest_m_s,highest_m_s,offsets,not_bonded_above", "scatter", &w->fault);
-    say(w, "### Where the scatter comes from\n\nCritical velocity of 14 um, rule \"thesis\", %d positions of the grid, %s um, one choice "
-           "changed at a time. The pair G_c, Gdot_c is source A's throughout: a choice that moves the median would need its own.\n\n"
-           "| choice | median, m/s | lowest - highest | not above | CPU s |\n|---|---|---|---|---|\n",
+                     "choice,critical_velocity_m_s,lowest_m_s,highest_m_s,offsets,not_bonded_above", "scatter",
+                     &w->fault);
+    say(w,
+        "### Where the scatter comes from\n\nCritical velocity of 14 um, rule \"thesis\", %d positions of the grid, %s "
+        "um, one choice "
+        "changed at a time. The pair G_c, Gdot_c is source A's throughout: a choice that moves the median would need "
+        "its own.\n\n"
+        "| choice | median, m/s | lowest - highest | not above | CPU s |\n|---|---|---|---|---|\n",
         offsets, w->budget == QUICK ? "1.5/0.5" : "1/0.25");
     for (k = 0; k < rows; k++) {
         impact_case c = study_case_default();
@@ -394,9 +420,10 @@ static int scatter(work *w)
         mpm_io_csv_real(&t, (mpm_real)spread.highest);
         mpm_io_csv_integer(&t, offsets);
         mpm_io_csv_integer(&t, lost);
-        say(w, "| %s | %s | %s - %s | %d | %.0f |\n", row[k].what, velocity_text(spread.median, range.high, middle, sizeof middle),
-            velocity_text(spread.lowest, range.high, low, sizeof low), velocity_text(spread.highest, range.high, high, sizeof high),
-            lost, cpu);
+        say(w, "| %s | %s | %s - %s | %d | %.0f |\n", row[k].what,
+            velocity_text(spread.median, range.high, middle, sizeof middle),
+            velocity_text(spread.lowest, range.high, low, sizeof low),
+            velocity_text(spread.highest, range.high, high, sizeof high), lost, cpu);
     }
     say(w, "\n");
     return mpm_io_csv_end(&t, &w->fault) >= 0 || failed(w);
@@ -416,8 +443,11 @@ static int held_out(work *w)
     (void)critical_budget(w, &offsets);
     w->s.early = 1;
     w->s.planned = w->s.done + 4 * offsets;
-    say(w, "### Impacts that were not calibrated on\n\nSource A's pair, %s um, %d positions of the grid: how many come out as in the "
-           "experiment.\n\n| impact | experiment | right by rule \"thesis\" | right by rule \"stays\" |\n|---|---|---|---|\n",
+    say(w,
+        "### Impacts that were not calibrated on\n\nSource A's pair, %s um, %d positions of the grid: how many come "
+        "out as in the "
+        "experiment.\n\n| impact | experiment | right by rule \"thesis\" | right by rule \"stays\" "
+        "|\n|---|---|---|---|\n",
         w->budget == QUICK ? "1.5/0.5" : "1/0.25", offsets);
     for (k = 0; k < 4; k++) {
         int right[2] = {0, 0};
@@ -435,8 +465,8 @@ static int held_out(work *w)
                 right[r] += critical_bonds(&rule, c.diameter, value) == row[k].bonds;
             }
         }
-        say(w, "| %g um at %g m/s | %s | %d of %d | %d of %d |\n", row[k].diameter, row[k].velocity, row[k].bonds ? "bonds" : "rebounds",
-            right[0], offsets, right[1], offsets);
+        say(w, "| %g um at %g m/s | %s | %d of %d | %d of %d |\n", row[k].diameter, row[k].velocity,
+            row[k].bonds ? "bonds" : "rebounds", right[0], offsets, right[1], offsets);
     }
     say(w, "\n");
     return 1;
@@ -446,7 +476,8 @@ static int held_out(work *w)
 
 static int calibrations(work *w)
 {
-    static const grid grids[9] = {{1.5, 0.5}, {1.0, 0.25}, {0.7, 0.175}, {1.5, 0.35}, {1.5, 0.3}, {1.0, 0.35}, {1.0, 0.2}, {0.7, 0.25}, {0.7, 0.15}};
+    static const grid grids[9] = {{1.5, 0.5},  {1.0, 0.25}, {0.7, 0.175}, {1.5, 0.35}, {1.5, 0.3},
+                                  {1.0, 0.35}, {1.0, 0.2},  {0.7, 0.25},  {0.7, 0.15}};
     static const char *const rules[2] = {"thesis", "stays"};
     static calibration_result result;
     const int count = w->budget == QUICK ? 1 : w->budget == DESK ? 2 : 9;
@@ -454,9 +485,12 @@ static int calibrations(work *w)
     int g, r, k, status;
     long node;
     w->s.early = 1;
-    say(w, "### A-cal: calibration\n\n14 um at 810 m/s and 30 um at 770 m/s, axisymmetric, one grid position, runs where the class changes. Source "
-           "A: G_c 1503.74 J/m2 and 2.271 (read as e5 J/(m2 us)) at 0.7/0.175, nearly the same on all grids. Rule \"thesis\": PBCP and "
-           "restitution tolerances of its Table 5.2 for the grid.\n\n| cell/spacing, um | rule | runs | bonded, 14 and 30 um | on the wrong side | "
+    say(w, "### A-cal: calibration\n\n14 um at 810 m/s and 30 um at 770 m/s, axisymmetric, one grid position, runs "
+           "where the class changes. Source "
+           "A: G_c 1503.74 J/m2 and 2.271 (read as e5 J/(m2 us)) at 0.7/0.175, nearly the same on all grids. Rule "
+           "\"thesis\": PBCP and "
+           "restitution tolerances of its Table 5.2 for the grid.\n\n| cell/spacing, um | rule | runs | bonded, 14 and "
+           "30 um | on the wrong side | "
            "crossings: G_c, Gdot_c | "
            "pairs run at both: only 14 um bonds, only 30 um |\n|---|---|---|---|---|---|---|\n");
     for (g = 0; g < count; g++)
@@ -472,17 +506,19 @@ static int calibrations(work *w)
             if ((status = calibration_run(&q, &w->s, w->message, sizeof w->message)) <= 0) return status;
             calibration_collect(&q, &w->s, &result);
             snprintf(name, sizeof name, "calibration_%g_%g_%s.png", grids[g].cell, grids[g].spacing, rules[r]);
-            if (!calibration_draw(&q, &result, data_file(w, name, path, sizeof path), "A-cal", &w->fault)) return failed(w);
+            if (!calibration_draw(&q, &result, data_file(w, name, path, sizeof path), "A-cal", &w->fault))
+                return failed(w);
             snprintf(points, sizeof points, "none");
             for (k = 0; k < result.points && at < sizeof points; k++)
-                at += (size_t)snprintf(points + at, sizeof points - at, "%s%.0f, %.3g", k ? "; " : "", result.point[k][0], result.point[k][1]);
+                at += (size_t)snprintf(points + at, sizeof points - at, "%s%.0f, %.3g", k ? "; " : "",
+                                       result.point[k][0], result.point[k][1]);
             for (node = 0; node < calibration_nodes(&q); node++)
                 for (k = 0; k < 2; k++)
                     only[k] += result.side[k].map.bonds[node] == 1 && result.side[1 - k].map.bonds[node] == 0;
-            say(w, "| %.3g/%.3g | %s | %ld | %ld, %ld | %ld, %ld | [%s](data/%s) | %ld, %ld |\n", grids[g].cell, grids[g].spacing, rules[r],
-                result.side[0].tests + result.side[1].tests, result.side[0].bonded, result.side[1].bonded,
-                result.side[0].status >= 0 ? result.side[0].fit.wrong : 0, result.side[1].status >= 0 ? result.side[1].fit.wrong : 0, points, name, only[0],
-                only[1]);
+            say(w, "| %.3g/%.3g | %s | %ld | %ld, %ld | %ld, %ld | [%s](data/%s) | %ld, %ld |\n", grids[g].cell,
+                grids[g].spacing, rules[r], result.side[0].tests + result.side[1].tests, result.side[0].bonded,
+                result.side[1].bonded, result.side[0].status >= 0 ? result.side[0].fit.wrong : 0,
+                result.side[1].status >= 0 ? result.side[1].fit.wrong : 0, points, name, only[0], only[1]);
         }
     say(w, "\n");
     return 1;
@@ -509,15 +545,20 @@ static int sites(work *w)
         if (value[1][STUDY_PBCP] > value[0][STUDY_PBCP]) low = c.eps_c;
         else high = c.eps_c;
     }
-    say(w, "### A-site: where it bonds\n\n14 um at 810 m/s after 30 ns, %.3g/%.3g um, axisymmetric. Source A: at equal PBCP the energy rule bonds nearer "
-           "the south pole, the strain rule at the rim. The strain rule's critical strain was halved in on the PBCP of the energy rule.\n\n"
-           "| rule | PBCP, %% | median distance of bonded points from the axis, um | of contacted points, um | ratio |\n|---|---|---|---|---|\n",
+    say(w,
+        "### A-site: where it bonds\n\n14 um at 810 m/s after 30 ns, %.3g/%.3g um, axisymmetric. Source A: at equal "
+        "PBCP the energy rule bonds nearer "
+        "the south pole, the strain rule at the rim. The strain rule's critical strain was halved in on the PBCP of "
+        "the energy rule.\n\n"
+        "| rule | PBCP, %% | median distance of bonded points from the axis, um | of contacted points, um | ratio "
+        "|\n|---|---|---|---|---|\n",
         c.cell, c.spacing);
     for (k = 0; k < 2; k++)
-        say(w, "| %s | %.2f | %.3f | %.3f | %.3f |\n", k ? "strain" : "energy", value[k][STUDY_PBCP], value[k][STUDY_R_BONDED],
-            value[k][STUDY_R_CONTACT], value[k][STUDY_R_BONDED] / value[k][STUDY_R_CONTACT]);
+        say(w, "| %s | %.2f | %.3f | %.3f | %.3f |\n", k ? "strain" : "energy", value[k][STUDY_PBCP],
+            value[k][STUDY_R_BONDED], value[k][STUDY_R_CONTACT], value[k][STUDY_R_BONDED] / value[k][STUDY_R_CONTACT]);
     say(w, "\nCritical strain %.3g at 1350 per us. %s\n\n", c.eps_c,
-        value[0][STUDY_R_BONDED] < value[1][STUDY_R_BONDED] ? "The statement comes back." : "The statement does not come back.");
+        value[0][STUDY_R_BONDED] < value[1][STUDY_R_BONDED] ? "The statement comes back."
+                                                            : "The statement does not come back.");
     return 1;
 }
 
@@ -537,8 +578,8 @@ static int read_particles(const char *folder, particle_row *row, int room)
     snprintf(path, sizeof path, "%s/particles.csv", folder);
     f = fopen(path, "rb");
     while (f && n < room && fgets(line, sizeof line, f))
-        if (sscanf(line, "%d,%*f,%*f,%*f,%19[^,],%lf,%*d,%*d,%*d,%lf,%lf,%lf", &id, row[n].fate, &row[n].pbcp, &row[n].v_z,
-                   &row[n].v_along, &row[n].ejected) == 6)
+        if (sscanf(line, "%d,%*f,%*f,%*f,%19[^,],%lf,%*d,%*d,%*d,%lf,%lf,%lf", &id, row[n].fate, &row[n].pbcp,
+                   &row[n].v_z, &row[n].v_along, &row[n].ejected) == 6)
             n++;
     if (f) fclose(f);
     return n;
@@ -602,7 +643,8 @@ static grid particles_grid(const work *w, grid full)
 
 static int two_particles(work *w)
 {
-    static const double offset[4] = {0, 2.5, 5, 7.5}, said[3][4] = {{5.73, 5.47, 4.71, 3.91}, {2.02, 1.65, 6.06, 16.24}, {1.24, 0.92, 0.94, -0.53}};
+    static const double offset[4] = {0, 2.5, 5, 7.5},
+                        said[3][4] = {{5.73, 5.47, 4.71, 3.91}, {2.02, 1.65, 6.06, 16.24}, {1.24, 0.92, 0.94, -0.53}};
     static particles_case q;
     const grid fine = {0.7, 0.175}, g = particles_grid(w, fine);
     particle_row row[2];
@@ -610,15 +652,21 @@ static int two_particles(work *w)
     mpm_io_csv t;
     int k, status;
     mpm_io_csv_begin(&t, data_file(w, "two_particles.csv", path, sizeof path),
-                     "offset_um,pbcp_percent,top_v_z_m_s,bottom_v_z_m_s,top,bottom,cell_um,spacing_um,geometry", "A-two", &w->fault);
-    say(w, "### A-two: one particle on another\n\nTwo of 14 um at 810 m/s, 3D (half), %.3g/%.3g um, after 100 ns; velocities of points up to 60 m/s, from the "
-           "substrate's mean.\n\n| offset, um | PBCP, %%: source A | here | top v_z, m/s: source A | here | bottom v_z: source A | here | top | bottom | CPU s |\n"
-           "|---|---|---|---|---|---|---|---|---|---|\n", g.cell, g.spacing);
+                     "offset_um,pbcp_percent,top_v_z_m_s,bottom_v_z_m_s,top,bottom,cell_um,spacing_um,geometry",
+                     "A-two", &w->fault);
+    say(w,
+        "### A-two: one particle on another\n\nTwo of 14 um at 810 m/s, 3D (half), %.3g/%.3g um, after 100 ns; "
+        "velocities of points up to 60 m/s, from the "
+        "substrate's mean.\n\n| offset, um | PBCP, %%: source A | here | top v_z, m/s: source A | here | bottom v_z: "
+        "source A | here | top | bottom | CPU s |\n"
+        "|---|---|---|---|---|---|---|---|---|---|\n",
+        g.cell, g.spacing);
     for (k = 0; k < 5; k++) { /* the last: the first once more, on source A's grid */
         const int rings = k == 4, at = k % 4;
         const grid here = rings ? fine : g;
         two_scene(&q, here, rings ? "axisymmetric" : "3d", offset[at]);
-        snprintf(folder, sizeof folder, "%s/two_%s_%g_%g_%g", w->s.folder, q.base.geometry, here.cell, here.spacing, offset[at]);
+        snprintf(folder, sizeof folder, "%s/two_%s_%g_%g_%g", w->s.folder, q.base.geometry, here.cell, here.spacing,
+                 offset[at]);
         status = need_particles(w, &q, folder);
         if (status <= 0 || read_particles(folder, row, 2) != 2) {
             mpm_io_csv_end(&t, NULL);
@@ -626,7 +674,8 @@ static int two_particles(work *w)
             return status > 0 ? 0 : status;
         }
         say(w, "| %g%s | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %s | %s | %.0f |\n", offset[at],
-            rings ? ", axisymmetric, 0.7/0.175" : "", said[0][at], read_summary(folder, "pbcp_percent"), said[1][at], row[1].v_z, said[2][at], row[0].v_z, row[1].fate, row[0].fate, read_summary(folder, "cpu_seconds"));
+            rings ? ", axisymmetric, 0.7/0.175" : "", said[0][at], read_summary(folder, "pbcp_percent"), said[1][at],
+            row[1].v_z, said[2][at], row[0].v_z, row[1].fate, row[0].fate, read_summary(folder, "cpu_seconds"));
         mpm_io_csv_real(&t, (mpm_real)offset[at]);
         mpm_io_csv_real(&t, (mpm_real)read_summary(folder, "pbcp_percent"));
         mpm_io_csv_real(&t, (mpm_real)row[1].v_z);
@@ -657,11 +706,15 @@ static int ten_particles(work *w)
     if (!particles_place(&q, spread, particles_height(&q, spread), 1)) return 0;
     snprintf(folder, sizeof folder, "%s/ten_%g_%g_%g", w->s.folder, g.cell, g.spacing, spread);
     if ((status = need_particles(w, &q, folder)) <= 0) return status;
-    say(w, "### A-ten: ten particles\n\nTen of 14 um at 810 m/s at random places and heights, 3D, %.3g/%.3g um, after %.0f ns. Source A (1.0/0.35): most bond, one is "
-           "prevented by ejected material.\n\n| particle | fate | PBCP, %% | v_z, m/s | along the face, m/s | ejected, %% |\n|---|---|---|---|---|---|\n",
+    say(w,
+        "### A-ten: ten particles\n\nTen of 14 um at 810 m/s at random places and heights, 3D, %.3g/%.3g um, after "
+        "%.0f ns. Source A (1.0/0.35): most bond, one is "
+        "prevented by ejected material.\n\n| particle | fate | PBCP, %% | v_z, m/s | along the face, m/s | ejected, %% "
+        "|\n|---|---|---|---|---|---|\n",
         g.cell, g.spacing, read_summary(folder, "time_ns"));
     for (k = 0; k < read_particles(folder, row, 10); k++)
-        say(w, "| %d | %s | %.2f | %.2f | %.2f | %.1f |\n", k, row[k].fate, row[k].pbcp, row[k].v_z, row[k].v_along, 100 * row[k].ejected);
+        say(w, "| %d | %s | %.2f | %.2f | %.2f | %.1f |\n", k, row[k].fate, row[k].pbcp, row[k].v_z, row[k].v_along,
+            100 * row[k].ejected);
     say(w, "\n%.0f of 10 bonded; PBCP of all surfaces %.2f %%. Cost: %.0f CPU s.\n\n", read_summary(folder, "bonded"),
         read_summary(folder, "pbcp_percent"), read_summary(folder, "cpu_seconds"));
     return 1;
@@ -677,12 +730,15 @@ static int parts(work *w)
     static const struct {
         const char *name;
         part_fn run;
-    } part[] = {{"conv", convergence}, {"dt", time_steps}, {"jet", jets}, {"crit", critical}, {"scatter", scatter},
-                {"held", held_out}, {"cal", calibrations}, {"site", sites}, {"two", two_particles}, {"ten", ten_particles}};
+    } part[] = {{"conv", convergence},  {"dt", time_steps},    {"jet", jets},         {"crit", critical},
+                {"scatter", scatter},   {"held", held_out},    {"cal", calibrations}, {"site", sites},
+                {"two", two_particles}, {"ten", ten_particles}};
     const int count = (int)(sizeof part / sizeof part[0]), budget = w->budget;
     int k, status;
-    say(w, "## Source A's results again\n\nMade by `make reproduction BUDGET=%s` (mpm.h %s); the tables are in [data](data).%s%s\n\n", w->budget_name, MPM_VERSION,
-        *w->desk ? " At the desk budget: " : "", w->desk);
+    say(w,
+        "## Source A's results again\n\nMade by `make reproduction BUDGET=%s` (mpm.h %s); the tables are in "
+        "[data](data).%s%s\n\n",
+        w->budget_name, MPM_VERSION, *w->desk ? " At the desk budget: " : "", w->desk);
     for (k = 0; k < count; k++) {
         if (*w->only && !strstr(w->only, part[k].name)) continue;
         if (!w->s.quiet) fprintf(stderr, "\rA-%-97s\n", part[k].name);
@@ -708,17 +764,20 @@ int main(int argc, char **argv)
     w.page = "docs/reproduction.md";
     w.only = w.desk = "";
     option_add(o, &n, "budget", OPTION_TEXT, &w.budget_name, "quick|desk|full");
-    option_add(o, &n, "only", OPTION_TEXT, &w.only, "parts: of conv,dt,jet,crit,scatter,held,cal,site,two,ten; empty: all");
+    option_add(o, &n, "only", OPTION_TEXT, &w.only,
+               "parts: of conv,dt,jet,crit,scatter,held,cal,site,two,ten; empty: all");
     option_add(o, &n, "desk", OPTION_TEXT, &w.desk, "parts that a quick budget runs as desk does");
     option_add(o, &n, "limit", OPTION_LONG, &w.s.limit, "stop after so many new runs; < 0: never");
     option_add(o, &n, "out", OPTION_TEXT, &w.s.folder, "finished runs, to go on from");
     option_add(o, &n, "data", OPTION_TEXT, &w.data, "folder for tables and plots");
     option_add(o, &n, "page", OPTION_TEXT, &w.page, "the page whose part is replaced");
     option_add(o, &n, "quiet", OPTION_FLAG, &w.s.quiet, "no progress");
-    parsed = options_parse(argc, argv, "Source A's results again, beside its numbers; run again after an interruption, it goes on.", o, n);
+    parsed = options_parse(
+        argc, argv, "Source A's results again, beside its numbers; run again after an interruption, it goes on.", o, n);
     if (parsed) return parsed < 0;
     w.budget = case_word("quick|desk|full", w.budget_name);
-    if (!case_knows("quick|desk|full", "budget", w.budget_name, w.message, sizeof w.message)) return !complain(w.message);
+    if (!case_knows("quick|desk|full", "budget", w.budget_name, w.message, sizeof w.message))
+        return !complain(w.message);
     if (mpm_io_make_directory(w.data, &w.fault) < 0) return !report(&w.fault, w.data);
     status = parts(&w);
     if (status > 0) status = write_page(&w);

@@ -124,7 +124,7 @@ static int write_summary(const taylor *s, const taylor_result *r, const output *
     mpm_io_json_number(&j, "final_radius_mm", r->radius);
     mpm_io_json_number(&j, "eps_max", r->eps_max);
     mpm_io_json_number(&j, "eps_mean", r->eps_mean);
-    mpm_io_json_number(&j, "temperature_max_K", r->temperature_max);
+    mpm_io_json_number(&j, "temperature_max", r->temperature_max);
     mpm_io_json_number(&j, "v_mean_m_s", r->velocity);
     mpm_io_json_number(&j, "mass_error", r->mass_error);
     mpm_io_json_number(&j, "momentum_error", r->momentum_error);

@@ -2093,16 +2093,37 @@ static inline mpm_real mpm__point_radius(const mpm_world *w, int32_t i)
     return mpm__sqrt(volume / (2 * MPM__PI * w->points.x[0][i])) / 2;
 }
 
-/* Shows every point of a run to the pairs at the contact nodes it touches: to their planes if `fit`, else
-   to their separations. Positions count from the node, in cells; across a mirror, in the image. */
-static inline void mpm__contact_points_run(mpm_world *w, const mpm_run *r, int fit)
+/* Shows point i, at x from a contact node [cells], to the pairs of its body there: to their planes if
+   `fit`, else to their separations. */
+static inline void mpm__show(mpm_world *w, int32_t slot, int32_t i, const mpm_real *x, int fit)
+{
+    const int32_t index = w->node[slot].index;
+    int32_t j;
+    for (j = w->node[slot].pair; j < w->pairs && w->node[w->pair[j].a].index == index; j++) {
+        mpm_pair *pair = &w->pair[j];
+        const int of_b = pair->b == slot;
+        if (!of_b && pair->a != slot) continue;
+        if (fit) {
+            mpm__plane_point(&w->plane[j], of_b, x);
+        } else {
+            const mpm_real *n = pair->normal, radius = mpm__point_radius(w, i);
+            const mpm_real along = (x[0] * n[0] + x[1] * n[1] + x[2] * n[2]) * w->desc.cell;
+            if (of_b) pair->low = along - radius < pair->low ? along - radius : pair->low;
+            else pair->high = along + radius > pair->high ? along + radius : pair->high;
+        }
+    }
+}
+
+/* Shows every point of a run to the contact nodes it touches. Positions count from the node; across a
+   mirror, in the image. */
+static inline void mpm__show_run(mpm_world *w, const mpm_run *r, int fit)
 {
     const int k = w->support[0], ky = w->support[1];
     const int32_t *slot = mpm__run_nodes(w, r);
     const mpm_real inv = 1 / w->desc.cell;
     mpm_real N[MPM__SUPPORT];
     mpm__weights s;
-    int32_t at, j;
+    int32_t at;
     int n, p, a, d;
     MPM__EACH_PIECE(r, at, n) {
         mpm__weigh(w, r, at, n, k, ky, &s);
@@ -2111,7 +2132,7 @@ static inline void mpm__contact_points_run(mpm_world *w, const mpm_run *r, int f
             for (a = 0; a < k * ky * k; a++) {
                 const mpm_node *node = &w->node[slot[a]];
                 const int step[3] = {a % k, a / k % ky, a / k / ky};
-                mpm_real x[3] = {0, 0, 0}, along = 0, radius;
+                mpm_real x[3] = {0, 0, 0};
                 if (!(node->sides & MPM_NODE_CONTACT) || !(N[a] > 0)) continue;
                 for (d = 0; d < 3; d++) {
                     if (d == 1 && ky == 1) continue;
@@ -2120,20 +2141,7 @@ static inline void mpm__contact_points_run(mpm_world *w, const mpm_run *r, int f
                     x[d] *= mpm__mirror(r, a, d, k, ky);
                 }
                 if (fit) mpm__constrain(w, node, x, NULL); /* on a mirror the image cancels it */
-                for (j = node->pair; j < w->pairs && w->node[w->pair[j].a].index == node->index; j++) {
-                    mpm_pair *pair = &w->pair[j];
-                    const int of_b = pair->b == slot[a];
-                    if (!of_b && pair->a != slot[a]) continue;
-                    if (fit) {
-                        mpm__plane_point(&w->plane[j], of_b, x);
-                        continue;
-                    }
-                    radius = mpm__point_radius(w, at + p);
-                    for (d = 0; d < 3; d++) along += x[d] * w->desc.cell * pair->normal[d];
-                    if (of_b) pair->low = along - radius < pair->low ? along - radius : pair->low;
-                    else pair->high = along + radius > pair->high ? along + radius : pair->high;
-                    along = 0;
-                }
+                mpm__show(w, slot[a], at + p, x, fit);
             }
         }
     }
@@ -2149,7 +2157,7 @@ static inline void mpm__plane_normals(mpm_world *w)
     memset(w->plane, 0, (size_t)w->pairs * sizeof *w->plane);
     for (n = 0; n < MPM__PLANE_STEPS; n++) {
         for (i = 0; i < w->runs; i++)
-            if (w->run[i].flags & MPM_NODE_CONTACT) mpm__contact_points_run(w, &w->run[i], 1);
+            if (w->run[i].flags & MPM_NODE_CONTACT) mpm__show_run(w, &w->run[i], 1);
         for (i = 0; i < w->pairs; i++) mpm__plane_step(&w->plane[i]);
     }
     for (i = 0; i < w->pairs; i++) {
@@ -2168,7 +2176,7 @@ static inline void mpm__separations(mpm_world *w)
         w->pair[i].low = MPM_R(1e30);
     }
     for (i = 0; i < w->runs; i++)
-        if (w->run[i].flags & MPM_NODE_CONTACT) mpm__contact_points_run(w, &w->run[i], 0);
+        if (w->run[i].flags & MPM_NODE_CONTACT) mpm__show_run(w, &w->run[i], 0);
     for (i = 0; i < w->pairs; i++) w->pair[i].separation = w->pair[i].low - w->pair[i].high;
 }
 

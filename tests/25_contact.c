@@ -6,6 +6,17 @@
 
 static const double eps = (double)MPM_EPSILON;
 
+/* Two bodies in a world, their contact found. */
+static void meet(mpm_world *w, const mpm_desc *d, const mpm_body_desc *a, const mpm_body_desc *b)
+{
+    CHECK_EQUAL("a world of two bodies", mpm_init(w, d, NULL, 0), MPM_OK);
+    CHECK_EQUAL("... the first", mpm_body_add(w, a), MPM_OK);
+    CHECK_EQUAL("... the second", mpm_body_add(w, b), MPM_OK);
+    mpm_locate(w);
+    mpm_p2g(w);
+    mpm_contact_find(w);
+}
+
 /* Mean angle in degrees between the normals found at the nodes of two spheres and the line of their
    centres, over twelve directions and grid positions. */
 static double angle(mpm_shape_function shape, mpm_normal_rule rule)
@@ -25,12 +36,7 @@ static double angle(mpm_shape_function shape, mpm_normal_rule rule)
         int32_t i;
         d.shape = shape;
         d.normal = rule;
-        mpm_init(&w, &d, NULL, 0);
-        mpm_body_add(&w, &a);
-        mpm_body_add(&w, &b);
-        mpm_locate(&w);
-        mpm_p2g(&w);
-        mpm_contact_find(&w);
+        meet(&w, &d, &a, &b);
         for (i = 0; i < w.pairs; i++, n++) {
             const mpm_real *q = w.pair[i].normal;
             const double along = (double)q[0] * x + (double)q[1] * y + (double)q[2] * z;
@@ -67,12 +73,7 @@ static void flat_faces(mpm_geometry geometry, mpm_shape_function shape, const ch
     d.normal = MPM_NORMAL_LOGISTIC;
     d.separation = 1;
     d.side[0] = d.side[2] = MPM_SIDE_SYMMETRY;
-    mpm_init(&w, &d, NULL, 0);
-    mpm_body_add(&w, &top);
-    mpm_body_add(&w, &low);
-    mpm_locate(&w);
-    mpm_p2g(&w);
-    mpm_contact_find(&w);
+    meet(&w, &d, &top, &low);
     for (i = 0; i < w.pairs; i++) {
         const int32_t index = w.node[w.pair[i].a].index, nx = w.nodes_per_axis[0], ny = w.nodes_per_axis[1];
         const double t = 1 + (double)w.pair[i].normal[2], g = fabs((double)w.pair[i].separation);
@@ -127,12 +128,7 @@ static void light_nodes(void)
     int k;
     for (k = 0; k < 2; k++) {
         d.contact_cutoff = k ? 0 : MPM_R(1e-3);
-        mpm_init(&w, &d, NULL, 0);
-        mpm_body_add(&w, &top);
-        mpm_body_add(&w, &low);
-        mpm_locate(&w);
-        mpm_p2g(&w);
-        mpm_contact_find(&w);
+        meet(&w, &d, &top, &low);
         if (k) CHECK_TRUE("light nodes: without a cutoff they have contact", w.pairs > 0);
         else CHECK_EQUAL("light nodes: below the cutoff they have none", w.pairs, 0);
         mpm_free(&w);

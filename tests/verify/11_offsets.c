@@ -2,6 +2,7 @@
    and the separation criterion change about it. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "impact_case.h"
+#include "program.h"
 #include "verify.h"
 
 #define OFFSETS 8
@@ -18,12 +19,6 @@ static void statistics(const double *value, int n, double *mean, double *deviati
     *mean = sum / n;
     for (i = 0; i < n; i++) square += (value[i] - *mean) * (value[i] - *mean);
     *deviation = sqrt(square / (n - 1));
-}
-
-static int complain(const char *message)
-{
-    fprintf(stderr, "error: %s\n", message);
-    return 0;
 }
 
 /* One combination: eight grid positions, with and without the bond. Prints a row of the table. */

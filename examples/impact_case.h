@@ -197,7 +197,8 @@ static inline int impact_metal(mpm_material *m, const impact_case *c, int body, 
                                                                                    : c->temperature;
     mpm_status status = mpm_material_preset(m, name, &units, NULL);
     if (status != MPM_OK) {
-        snprintf(message, n, "--%smaterial %s: %s", other ? "substrate-" : "", name, mpm_io_status_text(status));
+        snprintf(message, n, "--%smaterial %s: %s (build/material --list shows them)", other ? "substrate-" : "", name,
+                 mpm_io_status_text(status));
         return 0;
     }
     if (strcmp(c->model, "preset") && mpm_material_model(m, c->model, NULL) != MPM_OK) {

@@ -30,8 +30,9 @@ static double angle(mpm_shape_function shape, mpm_normal_rule rule)
         const double t = 0.3 + 0.21 * k, f = 0.5 * k;
         const double x = sin(t) * cos(f), y = sin(t) * sin(f), z = cos(t);
         mpm_desc d = scene_grid(1, 24, 24, 24, -12 + 0.083 * k, -12 + 0.05 * k, -12 - 0.03 * k);
-        mpm_body_desc a = scene_body(&m, mpm_sphere((mpm_real)(-R * x), (mpm_real)(-R * y), (mpm_real)(-R * z), 4), 0.5, 0);
-        mpm_body_desc b = scene_body(&m, mpm_sphere((mpm_real)(R * x), (mpm_real)(R * y), (mpm_real)(R * z), 4), 0.5, 0);
+        const mpm_real cx = (mpm_real)(R * x), cy = (mpm_real)(R * y), cz = (mpm_real)(R * z);
+        mpm_body_desc a = scene_body(&m, mpm_sphere(-cx, -cy, -cz, 4), 0.5, 0);
+        mpm_body_desc b = scene_body(&m, mpm_sphere(cx, cy, cz, 4), 0.5, 0);
         mpm_world w;
         int32_t i;
         d.shape = shape;

@@ -283,6 +283,8 @@ typedef struct mpm_desc {
     mpm_real contact_cutoff; /* a node has contact where both bodies weigh more than this share of a point
                                 there. Below it a point that barely reaches the node would push with its
                                 whole stress, which MUSL never lets it relieve. */
+    mpm_real bond_width;     /* 0: a pair is held from D = 1 on (A 4.7); > 0: in parts, of its separating
+                                momentum none at D = 1 - width/2, all at 1 + width/2, linear between; <= 2 */
     mpm_real gravity[3];     /* [length/time^2] */
     mpm_real mass_cutoff;    /* nodes lighter than this share of a mean point's mass are passed over:
                                 beyond it lie numbers too small to divide by (GIMP's outermost nodes) */
@@ -388,7 +390,7 @@ typedef struct mpm_pair {
     mpm_real normal[3];  /* unit, outward of a, into b; zero where no normal can be told */
     mpm_real separation; /* gap between the bodies' points along it [length]; with desc.separation */
     mpm_real high, low;  /* ... whose ends these are, counted from the node */
-    mpm_real bond;       /* nodal D: at 1 or more the pair holds together when separating */
+    mpm_real bond;       /* nodal D: at 1 or more the pair holds together when separating (see bond_width) */
     mpm_real impulse[3]; /* momentum that a got and b gave in this step */
     int held;            /* 1 if the bond gave it */
 } mpm_pair;
@@ -512,7 +514,8 @@ MPM_API void mpm_grid_update(mpm_world *w, mpm_real dt);
 /* Lists the pairs of bodies that meet at nodes, with their normals (A 3.30). */
 MPM_API void mpm_contact_find(mpm_world *w);
 
-/* Contact forces on the pairs (A 3.29, 3.31); where pair.bond >= 1 separating pairs are held. */
+/* Contact forces on the pairs (A 3.29, 3.31); where pair.bond >= 1 separating pairs are held (A 4.7; in
+   parts with desc.bond_width). Test: 30_bond. */
 MPM_API void mpm_contact_apply(mpm_world *w, mpm_real dt);
 
 /* Velocity of the points from nodal accelerations (A 3.32, first half). */
@@ -920,6 +923,8 @@ MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *f)
     if ((s = mpm__want(d->wall_friction >= 0, f, "wall_friction", d->wall_friction, -1)) != MPM_OK) return s;
     if ((s = mpm__want(d->mass_cutoff >= 0, f, "mass_cutoff", d->mass_cutoff, -1)) != MPM_OK) return s;
     if ((s = mpm__want(d->contact_cutoff >= 0, f, "contact_cutoff", d->contact_cutoff, -1)) != MPM_OK) return s;
+    if ((s = mpm__want(d->bond_width >= 0 && d->bond_width <= 2, f, "bond_width", d->bond_width, -1)) != MPM_OK)
+        return s;
     if ((s = mpm__want(d->user_fields >= 0 && d->user_fields <= MPM_USER_FIELDS, f, "user_fields",
                        (mpm_real)d->user_fields, -1)) != MPM_OK)
         return s;
@@ -2267,6 +2272,15 @@ static inline void mpm__coulomb(const mpm_real *normal, mpm_real mu, mpm_real *j
     for (d = 0; d < 3; d++) j[d] = jn * normal[d] + (mu > 0 ? keep * t[d] : 0);
 }
 
+/* The share of its separating momentum by which a pair of nodal D is held. */
+static inline mpm_real mpm__held_share(mpm_real D, mpm_real width)
+{
+    mpm_real share;
+    if (!(width > 0)) return D >= 1 ? MPM_R(1.0) : MPM_R(0.0);
+    share = (D - 1) / width + MPM_R(0.5);
+    return share < 0 ? 0 : share > 1 ? 1 : share;
+}
+
 MPM_API void mpm_contact_apply(mpm_world *w, mpm_real dt)
 {
     int32_t i;
@@ -2276,15 +2290,17 @@ MPM_API void mpm_contact_apply(mpm_world *w, mpm_real dt)
     for (i = 0; i < w->pairs; i++) {
         mpm_pair *pair = &w->pair[i];
         mpm_node *a = &w->node[pair->a], *b = &w->node[pair->b];
-        mpm_real j[3], toward = 0;
+        mpm_real j[3], toward = 0, share;
         int approaching, bonded;
         mpm__sticking(a, b, j);
         for (d = 0; d < 3; d++) toward -= j[d] * pair->normal[d];
         approaching = toward > 0; /* (m_b P_a - m_a P_b) . n > 0 (A 3.29) */
         if (w->desc.separation && pair->separation > 0) approaching = 0;
-        bonded = !approaching && pair->bond >= 1;
+        share = approaching ? 0 : mpm__held_share(pair->bond, w->desc.bond_width);
+        bonded = share > 0;
         if (!approaching && !bonded && w->desc.contact != MPM_CONTACT_WELD) continue;
         if (approaching && w->desc.contact == MPM_CONTACT_FRICTION) mpm__coulomb(pair->normal, w->desc.friction, j);
+        for (d = 0; d < 3 && bonded && w->desc.contact != MPM_CONTACT_WELD; d++) j[d] *= share;
         mpm__constrain(w, a, j, NULL);
         for (d = 0; d < 3; d++) {
             pair->impulse[d] = j[d];

@@ -19,6 +19,7 @@ typedef struct impact_case {
     double substrate_diameter, substrate_height;   /* um */
     double time, dt_factor;                        /* ns; of the critical step of a 0.5 um cell */
     double gc, gdot, floor;                        /* energy bond: J/m2, J/m2/us, 1 */
+    double bond_length, bond_width;                /* its length, um (0: the cell); D from free to held */
     double eps_c, epsdot_c;                        /* strain bond: 1, 1/us */
     double shell;                                  /* thickness of the surface that contacts and bonds, spacings */
     double friction;
@@ -135,6 +136,9 @@ static inline int impact_check(const impact_case *c, char *m, size_t n)
            case_wants(c->gc > 0 && c->gc < 1e30, "gc", c->gc, "must be > 0 J/m2", m, n) &&
            case_wants(c->gdot > 0 && c->gdot < 1e30, "gdot", c->gdot, "must be > 0 J/m2/us", m, n) &&
            case_wants(c->floor > 0 && c->floor < 1e30, "floor", c->floor, "must be > 0", m, n) &&
+           case_wants(c->bond_length >= 0 && c->bond_length < big, "bond-length", c->bond_length,
+                        "must be > 0 um, or 0 for the cell", m, n) &&
+           case_wants(c->bond_width >= 0 && c->bond_width <= 2, "bond-width", c->bond_width, "must be 0 .. 2", m, n) &&
            case_wants(c->eps_c > 0 && c->eps_c < 1e30, "eps-c", c->eps_c, "must be > 0", m, n) &&
            case_wants(c->epsdot_c > 0 && c->epsdot_c < 1e30, "epsdot-c", c->epsdot_c, "must be > 0 per us", m, n) &&
            case_wants(c->shell > 0 && c->shell < big, "shell", c->shell, "must be > 0 spacings", m, n) &&
@@ -181,6 +185,7 @@ static inline mpm_desc impact_grid(const impact_case *c)
     d.origin[2] = (mpm_real)(shift - below * c->cell);
     d.friction = (mpm_real)c->friction;
     d.separation = c->separation;
+    d.bond_width = (mpm_real)c->bond_width;
     d.normal = (mpm_normal_rule)case_word("ranked|mvg|average|vertical|logistic", c->normal);
     d.bodies = 2;
     return d;
@@ -219,6 +224,7 @@ static inline mpm_bond impact_bond(const impact_case *c)
     b.critical = (mpm_real)(b.rule == MPM_BOND_STRAIN ? c->eps_c : c->gc);
     b.critical_rate = (mpm_real)(b.rule == MPM_BOND_STRAIN ? c->epsdot_c : c->gdot);
     b.floor = (mpm_real)c->floor;
+    b.length = (mpm_real)c->bond_length;
     return b;
 }
 

@@ -235,6 +235,42 @@ static void interface(void)
     mpm_free(&w);
 }
 
+/* The cube leaves the slab at 3 m/s; D is the same everywhere. Returns what the bond gives to the cube. */
+static double held_by(double D, double width)
+{
+    mpm_units u = mpm_units_um_us_ng();
+    mpm_material m = scene_metal(1, u);
+    mpm_bond b = mpm_bond_default(&u);
+    mpm_world w = cube_on_slab(&m, 0);
+    double impulse;
+    int32_t i;
+    w.desc.bond_width = (mpm_real)width;
+    for (i = 0; i < w.points.count; i++) {
+        w.points.bond[i] = (mpm_real)D;
+        if (i < w.body[1].first) w.points.v[2][i] = 3;
+    }
+    find_contact(&w);
+    mpm_bond_nodes(&b, &w);
+    mpm_contact_apply(&w, MPM_R(1e-5));
+    impulse = mpm_bond_interface(&w, 0, 1).impulse[2];
+    mpm_free(&w);
+    return impulse;
+}
+
+static void widths(void)
+{
+    const double whole = held_by(1.0001, 0);
+    mpm_desc d = scene_grid(1, 4, 4, 4, 0, 0, 0);
+    CHECK_TRUE("held at D = 1 (A 4.7)", whole < 0);
+    CHECK_NEAR("free below", held_by(0.9999, 0), 0, 0);
+    CHECK_NEAR("width 1: free up to 1/2", held_by(0.5, 1), 0, 0);
+    CHECK_RELATIVE("... a quarter at 3/4", held_by(0.75, 1), whole / 4, 64 * eps);
+    CHECK_RELATIVE("... half at 1", held_by(1, 1), whole / 2, 64 * eps);
+    CHECK_RELATIVE("... all beyond 3/2", held_by(1.75, 1), whole, 64 * eps);
+    d.bond_width = MPM_R(2.5);
+    CHECK_EQUAL("a width beyond 2 would hold without any bond", mpm_desc_check(&d, NULL), MPM_ERR_ARGUMENT);
+}
+
 /* A disc of radius 2 um in rings, by both shape functions: its area is pi 2^2. */
 static void rings(void)
 {
@@ -421,6 +457,7 @@ int main(void)
     averages();
     rules();
     interface();
+    widths();
     rings();
     partners();
     splats();

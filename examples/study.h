@@ -87,6 +87,8 @@ enum {
     STUDY_JET,        /* share of the particle's mass further than 1.5 initial radii from its axis */
     STUDY_R_CONTACT,  /* median distance from the axis of the particle's points with D > 0, um */
     STUDY_R_BONDED,   /* ... with D >= 1; 0 without any */
+    STUDY_INNER,      /* share of the bonded points (by mass) in the inner half of the contact radius, which is
+                         sqrt 2 of the median distance of those with D > 0; evenly spread ones: a quarter */
     STUDY_UNACCOUNTED, /* energy, of the initial */
     STUDY_END,        /* ns simulated */
     STUDY_STEPS,
@@ -98,7 +100,7 @@ enum {
 static const char *const study_name[STUDY_VALUES] = {
     "pbcp_percent", "abp", "contacted_points", "v_rest_m_s", "v_mean_m_s", "v_late_m_s", "substrate_drift_m_s",
     "held_pairs", "held_late_share", "flattening", "eps_mean", "plastic_energy_density_MPa", "temperature_max_K",
-    "ejected_mass_share", "jet_mass_share", "contact_radius_um", "bonded_radius_um", "energy_unaccounted",
+    "ejected_mass_share", "jet_mass_share", "contact_radius_um", "bonded_radius_um", "bonded_inner_share", "energy_unaccounted",
     "end_ns", "steps", "points", "cpu_s"};
 
 /* A study under way: where finished runs are kept, and what the progress line needs. */
@@ -255,6 +257,8 @@ static inline int study_run(study *s, const impact_case *c, double *value, char 
     value[STUDY_JET] = fmax(0, 1 - study_within(&run.world, 0.75 * c->diameter, 0) / r.particle.mass);
     value[STUDY_R_CONTACT] = study_median_radius(&run.world, 1e-12);
     value[STUDY_R_BONDED] = study_median_radius(&run.world, 1);
+    value[STUDY_INNER] = case_share(study_within(&run.world, value[STUDY_R_CONTACT] / sqrt(2.0), 1),
+                                    study_within(&run.world, HUGE_VAL, 1));
     value[STUDY_UNACCOUNTED] = r.energy_unaccounted;
     value[STUDY_END] = (double)run.world.time * 1e3;
     value[STUDY_STEPS] = (double)run.world.steps;

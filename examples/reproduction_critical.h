@@ -323,7 +323,7 @@ static inline int rate_unit(work *w)
     w->s.planned = w->s.done + 8 * critical_cost(&range);
     say(w, "### The unit of Gdot_c\n\nSource A prints 2.271 for it. Critical velocity of 14 um with G_c 1503.74 J/m2 by "
            "what it may mean, rule \"thesis\", %s um, axisymmetric, one position of the grid, between %.0f and %.0f "
-           "m/s. Experiment: 810 m/s; nothing bonds below some 600.\n\n"
+           "m/s. Experiment: 810 m/s.\n\n"
            "| Gdot_c, J/(m2 us) | critical velocity, m/s | PBCP there, %% |\n|---|---|---|\n",
         budget_grid(w), range.low, range.high);
     for (power = 0; power < 8; power++) {

@@ -241,6 +241,32 @@ static inline int critical(work *w)
 
 /* ---- where the scatter comes from ------------------------------------------------------------ */
 
+/* One velocity at eight positions of the grid, without and with the bond: what changes with the position. */
+static inline int positions(work *w)
+{
+    double value[2][STUDY_VALUES];
+    int k, b, status;
+    w->s.early = 0;
+    w->s.planned = w->s.done + 16;
+    say(w, "### Where the scatter comes from\n\n14 um at 810 m/s, %s um, axisymmetric, at eight positions of the grid: "
+           "the rebound without bond, and with it mean D of the contacted points, PBCP, and the rebound.\n\n"
+           "| grid plane over the interface, um | rebound without bond, m/s | mean D | PBCP, %% | rebound, m/s "
+           "|\n|---|---|---|---|---|\n", budget_grid(w));
+    for (k = 0; k < 8; k++) {
+        for (b = 0; b < 2; b++) {
+            impact_case c = budget_case(w);
+            c.offset = c.cell * k / 8;
+            c.bond = b ? "energy" : "none";
+            study_complete(&c, "thesis");
+            if ((status = study_need(&w->s, &c, value[b], w->message, sizeof w->message)) <= 0) return status;
+        }
+        say(w, "| %.3f | %.1f | %.3f | %.2f | %.1f |\n", budget_case(w).cell * k / 8, value[0][STUDY_V_MEAN],
+            value[1][STUDY_ABP], value[1][STUDY_PBCP], value[1][STUDY_V_MEAN]);
+    }
+    say(w, "\n");
+    return 1;
+}
+
 /* The critical velocity of 14 um over grid positions, one choice of the method changed at a time. */
 static inline int scatter(work *w)
 {
@@ -269,16 +295,16 @@ static inline int scatter(work *w)
     critical_outcome out;
     char path[MPM_IO_PATH];
     mpm_io_csv t;
-    int k, status;
+    int k, status = positions(w);
+    if (status <= 0) return status;
     range.high = 1200;
     w->s.early = 1;
     w->s.planned = w->s.done + rows * times * critical_cost(&range);
     mpm_io_csv_begin(&t, data_file(w, "scatter.csv", path, sizeof path),
                      "choice,critical_velocity_m_s,lowest_m_s,highest_m_s,offsets,not_bonded_above", "scatter",
                      &w->fault);
-    say(w, "### Where the scatter comes from\n\nCritical velocity of 14 um, rule \"thesis\", %d positions of the grid, "
-           "%s um, one choice changed at a time. The pair G_c, Gdot_c is source A's throughout: a choice that moves "
-           "the median would need its own.\n\n"
+    say(w, "Critical velocity of 14 um, rule \"thesis\", %d positions of the grid, %s um, one choice changed at a "
+           "time. The pair G_c, Gdot_c is source A's throughout: a choice that moves the median would need its own.\n\n"
            "| choice | median, m/s | lowest - highest | not above | CPU s |\n|---|---|---|---|---|\n",
         times, budget_grid(w));
     for (k = 0; k < rows; k++) {

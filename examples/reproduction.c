@@ -73,7 +73,8 @@ static int convergence(work *w)
     }
     say(w, "\nFrom the lowest to the highest of these grids: strain %+.1f %%, energy density %+.1f %%; staged %+.1f %% "
            "and %+.1f %%. Cost: %.0f CPU s.\n\n", 100 * (high[0][0] / low[0][0] - 1),
-        100 * (high[1][0] / low[1][0] - 1), 100 * (high[0][1] / low[0][1] - 1), 100 * (high[1][1] / low[1][1] - 1), cpu);
+        100 * (high[1][0] / low[1][0] - 1), 100 * (high[0][1] / low[0][1] - 1), 100 * (high[1][1] / low[1][1] - 1),
+        cpu);
     return mpm_io_csv_end(&t, &w->fault) >= 0 || failed(w);
 }
 
@@ -150,8 +151,8 @@ static int jets(work *w)
     int g, k, status;
     w->s.early = 0;
     w->s.planned = w->s.done + 2 * count;
-    say(w, "### A-jet: below and above the critical velocity\n\n| impact | source A | cell/spacing, um | mass beyond 1.5 "
-           "radii of the axis, %% | faster than 60 m/s, %% | mean velocity at the end, m/s | PBCP, %% | flattening | "
+    say(w, "### A-jet: below and above the critical velocity\n\n| impact | source A | cell/spacing, um | mass beyond "
+           "1.5 radii of the axis, %% | faster than 60 m/s, %% | mean velocity at the end, m/s | PBCP, %% | flattening | "
            "CPU s |\n|---|---|---|---|---|---|---|---|---|\n");
     for (k = 0; k < 2; k++)
         for (g = 0; g < count; g++) {
@@ -162,8 +163,8 @@ static int jets(work *w)
             c.spacing = grids[g].spacing;
             study_complete(&c, "thesis");
             if ((status = study_need(&w->s, &c, value, w->message, sizeof w->message)) <= 0) return status;
-            say(w, "| %g um at %g m/s | %s | %.3g/%.3g | %.2f | %.1f | %.2f | %.2f | %.3f | %.0f |\n", size[k], speed[k],
-                said[k], c.cell, c.spacing, 100 * value[STUDY_JET], 100 * value[STUDY_EJECTED], value[STUDY_V_LATE],
+            say(w, "| %g um at %g m/s | %s | %.3g/%.3g | %.2f | %.1f | %.2f | %.2f | %.3f | %.0f |\n", size[k],
+                speed[k], said[k], c.cell, c.spacing, 100 * value[STUDY_JET], 100 * value[STUDY_EJECTED], value[STUDY_V_LATE],
                 value[STUDY_PBCP], value[STUDY_FLATTENING], value[STUDY_CPU]);
         }
     say(w, "\n");

@@ -16,6 +16,7 @@ typedef enum variation {
 
 typedef struct critical_outcome {
     critical_spread spread;
+    double first; /* of the first repetition: a grid plane on the interface */
     int lost;   /* tested velocities above the critical one that do not bond, all repetitions together */
     double cpu; /* s */
 } critical_outcome;
@@ -43,6 +44,7 @@ static inline int critical_repeat(work *w, impact_case c, variation vary, const 
         out->lost += a[k].lost;
     }
     for (k = 0; k < curve.runs; k++) out->cpu += curve.run[k].value[STUDY_CPU];
+    out->first = a[0].velocity;
     out->spread = critical_summary(a, times);
     return 1;
 }
@@ -105,7 +107,7 @@ static inline int critical_row(work *w, mpm_io_csv *t, const critical_setting *g
 {
     critical_range range = critical_budget(w);
     impact_case c = study_case_default();
-    char difference[40] = "-";
+    char difference[40] = "-", first[40];
     int status;
     c.diameter = sizes[size];
     c.cell = g->cell;
@@ -140,7 +142,8 @@ static inline int critical_row(work *w, mpm_io_csv *t, const critical_setting *g
     say(w, "| %g | %s | %s, %g x %g | %d | %.0f | ", sizes[size], rule_name, g->name, c.substrate_diameter,
         c.substrate_height, g->times[size], said_critical[size]);
     say_spread(w, &out->spread, range.high);
-    say(w, " | %s | %.2f | %d | %.0f |\n", difference, out->spread.middle.pbcp, out->lost, out->cpu);
+    say(w, " | %s | %s | %.2f | %d | %.0f |\n", difference, velocity_text(out->first, range.high, first, sizeof first),
+        out->spread.middle.pbcp, out->lost, out->cpu);
     return 1;
 }
 
@@ -224,10 +227,10 @@ static inline int critical(work *w)
            "budget: one position, halved between 600 and 1000 m/s). Rule \"thesis\": PBCP at least 5.0 %% and rebound "
            "at most 0.6 m/s, 4.8 %% and 0.9 m/s at 14 um, relative to the substrate; \"stays\": late mean velocity "
            "under 2 m/s and the bond at work. \"Not above\": tested velocities above the critical one that do not "
-           "bond, all positions together. Source A ran one position at 0.7/0.175. Experiment: 810 m/s (14 um), 770 "
-           "(30 um).\n\n"
+           "bond, all positions together. \"On the plane\": the interface on a grid plane. Source A ran one position at "
+           "0.7/0.175, which is not stated. Experiment: 810 m/s (14 um), 770 (30 um).\n\n"
            "| um | rule | cell/spacing, substrate, um | positions | source A | here | lowest - highest | difference "
-           "| PBCP, %% | not above | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+           "| on the plane | PBCP, %% | not above | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
         range.low, range.high, range.step);
     status = critical_rows(w, &t, line, &lines);
     if (status <= 0) {
@@ -347,8 +350,8 @@ static inline int rate_unit(work *w)
     range.high = 1200;
     w->s.early = 1;
     w->s.planned = w->s.done + 8 * critical_cost(&range);
-    say(w, "### The unit of Gdot_c\n\nSource A prints 2.271 for it. Critical velocity of 14 um with G_c 1503.74 J/m2 by "
-           "what it may mean, rule \"thesis\", %s um, axisymmetric, one position of the grid, between %.0f and %.0f "
+    say(w, "### The unit of Gdot_c\n\nSource A prints 2.271 for it. Critical velocity of 14 um with G_c 1503.74 J/m2 "
+           "by what it may mean, rule \"thesis\", %s um, axisymmetric, one position of the grid, between %.0f and %.0f "
            "m/s. Experiment: 810 m/s.\n\n"
            "| Gdot_c, J/(m2 us) | critical velocity, m/s | PBCP there, %% |\n|---|---|---|\n",
         budget_grid(w), range.low, range.high);

@@ -100,8 +100,8 @@ enum {
 static const char *const study_name[STUDY_VALUES] = {
     "pbcp_percent", "abp", "contacted_points", "v_rest_m_s", "v_mean_m_s", "v_late_m_s", "substrate_drift_m_s",
     "held_pairs", "held_late_share", "flattening", "eps_mean", "plastic_energy_density_MPa", "temperature_max_K",
-    "ejected_mass_share", "jet_mass_share", "contact_radius_um", "bonded_radius_um", "bonded_inner_share", "energy_unaccounted",
-    "end_ns", "steps", "points", "cpu_s"};
+    "ejected_mass_share", "jet_mass_share", "contact_radius_um", "bonded_radius_um", "bonded_inner_share",
+    "energy_unaccounted", "end_ns", "steps", "points", "cpu_s"};
 
 /* A study under way: where finished runs are kept, and what the progress line needs. */
 typedef struct study {

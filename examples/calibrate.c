@@ -15,12 +15,6 @@
 #define MPM_IMPLEMENTATION
 #include "calibration.h"
 
-static int fail(const char *message)
-{
-    fprintf(stderr, "error: %s\n", message);
-    return 1;
-}
-
 static int list(const calibration *q, const study *s)
 {
     static calibration_map map;
@@ -218,14 +212,14 @@ int main(int argc, char **argv)
                       "Writes tasks.csv, classes.png and summary.json; run again after an interruption, it goes on.",
                       o, n);
     if (parsed) return parsed < 0;
-    if (!check(&q, message, sizeof message)) return fail(message);
+    if (!check(&q, message, sizeof message)) return !complain(message);
     calibration_tolerances(q.base.cell, q.base.spacing, q.pbcp, q.restitution);
     s.early = !whole;
     tasks = 2 * calibration_nodes(&q);
     if (listing) return list(&q, &s);
     if (task >= tasks) {
         snprintf(message, sizeof message, "--task %ld: there are %ld, from 0", task, tasks);
-        return fail(message);
+        return !complain(message);
     }
     if (task >= 0) {
         const impact_case c = calibration_case(&q, (int)(task / calibration_nodes(&q)), task % calibration_nodes(&q));
@@ -233,16 +227,16 @@ int main(int argc, char **argv)
         s.planned = 1;
         status = study_need(&s, &c, value, message, sizeof message);
         study_progress_end(&s);
-        return status > 0 ? 0 : fail(message);
+        return status > 0 ? 0 : !complain(message);
     }
     if (!collecting) {
         status = calibration_run(&q, &s, message, sizeof message);
         study_progress_end(&s);
     }
-    if (status == 0) return fail(message);
+    if (status == 0) return !complain(message);
     if (status < 0) {
         printf("stopped after %ld new runs; run again to go on\n", s.fresh);
         return 3;
     }
-    return collect(&q, &s, o, n, message, sizeof message) ? 0 : fail(message);
+    return collect(&q, &s, o, n, message, sizeof message) ? 0 : !complain(message);
 }

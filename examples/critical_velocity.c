@@ -17,12 +17,6 @@ typedef struct request {
     critical_range range;
 } request;
 
-static int fail(const char *message)
-{
-    fprintf(stderr, "error: %s\n", message);
-    return 1;
-}
-
 /* Every run: offset by offset in the order of velocity. */
 static int by_velocity(const void *a, const void *b)
 {
@@ -199,7 +193,7 @@ int main(int argc, char **argv)
                            "summary.json\ninto the output folder; run again after an interruption, it goes on.", o, n);
     if (parsed) return parsed < 0;
     study_complete(&c, q.substrate);
-    if (!check(&q, &c, message, sizeof message)) return fail(message);
+    if (!check(&q, &c, message, sizeof message)) return !complain(message);
     st.folder = q.folder;
     st.early = !whole;
     st.planned = critical_cost(&q.range) * q.offsets;
@@ -207,7 +201,7 @@ int main(int argc, char **argv)
         c.offset = c.cell * k / (double)q.offsets;
         status = critical_search(&st, &c, &q.range, &q.rule, &curve, &answer[k], message, sizeof message);
         study_progress_end(&st);
-        if (status == 0) return fail(message);
+        if (status == 0) return !complain(message);
         if (status < 0) {
             printf("stopped after %ld new runs; %ld are done: run again to go on\n", st.fresh, st.done);
             return 3;
@@ -218,7 +212,7 @@ int main(int argc, char **argv)
     if (!write_curve(&q, &curve, &fault) || !draw_curve(&q, &curve, &fault) ||
         !write_summary(&q, answer, &spread, &st, o, n, &fault)) {
         mpm_io_fault_text(message, sizeof message, &fault);
-        return fail(message);
+        return !complain(message);
     }
     if (!st.quiet) print_answers(&c, &q, answer, &spread);
     return 0;

@@ -8,15 +8,7 @@
    The loop in main() is the method, one call per phase. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "impact_options.h"
-#include "program.h"
-
-#include <time.h>
-
-typedef struct output {
-    const char *folder;
-    long frames;
-    int quiet;
-} output;
+#include "output.h"
 
 /* "al", or "al on cu". */
 static const char *metals(const impact *s, char *text, size_t n)
@@ -27,108 +19,41 @@ static const char *metals(const impact *s, char *text, size_t n)
     return text;
 }
 
-/* Two cuts of the whole cross-section: plastic strain and temperature. */
-static void describe_cuts(const impact *s, const impact_case *c, mpm_io_cut_desc cut[2], const char *title,
-                          const char *time)
+/* Plastic strain and temperature of the whole cross-section. */
+static void describe_picture(const impact *s, const impact_case *c, const output *o, output_picture *p)
 {
-    const mpm_world *w = &s->world;
     const mpm_material *a = &s->material[IMPACT_PARTICLE], *b = &s->material[IMPACT_SUBSTRATE];
-    const double edge = 1.1 * c->substrate_diameter / 2;
     const double cold = (double)(a->temperature < b->temperature ? a->temperature : b->temperature);
     const double melt = (double)(a->melt_temperature > b->melt_temperature ? a->melt_temperature : b->melt_temperature);
-    int i;
-    for (i = 0; i < 2; i++) {
-        cut[i] = mpm_io_cut_of(w, i == 0 ? w->points.plastic_strain : w->points.temperature);
-        cut[i].at = w->desc.geometry == MPM_3D && w->desc.side[2] == MPM_SIDE_SYMMETRY ? c->spacing / 2 : 0;
-        cut[i].mirror = w->desc.side[0] == MPM_SIDE_SYMMETRY;
-        cut[i].window[0] = -edge;
-        cut[i].window[1] = edge;
-        cut[i].window[2] = -1.05 * c->substrate_height;
-        cut[i].window[3] = 1.1 * (2 * impact_half_height(c) + (c->gap > 0 ? c->gap : 0));
-        cut[i].length_unit = "um";
-        cut[i].time = time;
-    }
-    cut[0].title = title;
-    cut[0].label = "effective plastic strain";
-    cut[0].low = 0;
-    cut[0].high = 4;
-    cut[1].label = "temperature (K)";
-    cut[1].map = MPM_IO_HEAT;
-    cut[1].low = cold;
-    cut[1].high = melt > cold ? melt : cold + 600;
+    char name[64];
+    output_cuts(o, &s->world, c->spacing, s->world.points.temperature, p);
+    output_window(p, 1.1 * c->substrate_diameter / 2, -1.05 * c->substrate_height,
+                  1.1 * (2 * impact_half_height(c) + (c->gap > 0 ? c->gap : 0)));
+    output_heat(p, cold, melt > cold ? melt : cold + 600);
+    snprintf(p->title, sizeof p->title, "%s, %g um at %g m/s", metals(s, name, sizeof name), c->diameter, c->velocity);
 }
 
-static int write_picture(const impact *s, const impact_case *c, const char *path)
+static int write_frame(const impact *s, const impact_case *c, output *o)
 {
-    mpm_io_cut_desc cut[2];
-    mpm_fault fault;
-    char time[32], title[160], name[64];
-    snprintf(time, sizeof time, "t = %.1f ns", (double)s->world.time * 1e3);
-    snprintf(title, sizeof title, "%s, %g um at %g m/s", metals(s, name, sizeof name), c->diameter, c->velocity);
-    describe_cuts(s, c, cut, title, time);
-    if (mpm_io_cut_png(path, cut, 2, 2, 800, &fault) < 0) return report(&fault, path);
-    return 1;
+    output_picture p;
+    describe_picture(s, c, o, &p);
+    return output_frame(o, &s->world, NULL, 0, &p);
 }
 
-/* All that ParaView can show, in um, m/s, MPa, K. */
-static int write_points(const impact *s, const char *folder, const char *name)
+static int write_picture(const impact *s, const impact_case *c, output *o)
 {
-    const mpm_world *w = &s->world;
-    const mpm_points *p = &w->points;
-    mpm_io_vtu_desc d = mpm_io_vtu_desc_default();
-    mpm_io_field field[11];
-    mpm_fault fault;
-    char path[1024];
-    int32_t *body = (int32_t *)malloc((size_t)p->count * sizeof *body);
-    int a, ok;
-    if (!body) return complain("no memory for output");
-    mpm_io_body_numbers(w, body);
-    field[0] = mpm_io_vector("velocity (m/s)", p->v[0], p->v[1], p->v[2], 1);
-    field[1] = mpm_io_tensor("stress (MPa)", p->stress[0], p->stress[1], p->stress[2], p->stress[3], p->stress[4],
-                             p->stress[5], 1);
-    field[2] = mpm_io_scalar("density (g/cm3)", p->density, 1e3);
-    field[3] = mpm_io_scalar("temperature (K)", p->temperature, 1);
-    field[4] = mpm_io_scalar("plastic strain", p->plastic_strain, 1);
-    field[5] = mpm_io_scalar("plastic strain rate (1/us)", p->plastic_rate, 1);
-    field[6] = mpm_io_scalar("plastic energy density (MPa)", p->plastic_work, 1);
-    field[7] = mpm_io_scalar("bond D", p->bond, 1);
-    field[8] = mpm_io_int32("body", body);
-    field[9] = mpm_io_int32("id", p->id);
-    field[10] = mpm_io_uint8("surface", p->flags);
-    d.count = (size_t)p->count;
-    for (a = 0; a < 3; a++) d.x[a] = p->x[a];
-    d.fields = field;
-    d.field_count = 11;
-    d.time = (double)w->time * 1e3;
-    d.float32 = 1;
-    d.note = "impact: lengths um, time ns";
-    ok = mpm_io_vtu(file_in(folder, name, path, sizeof path), &d, &fault) >= 0;
-    free(body);
-    return ok ? 1 : report(&fault, path);
+    output_picture p;
+    describe_picture(s, c, o, &p);
+    return output_png(o, &p, "impact.png");
 }
 
-/* Frame number `frame` of the series: points for ParaView and a picture. */
-static int write_frame(const impact *s, const impact_case *c, const output *o, long frame)
-{
-    char name[64], path[1024];
-    mpm_fault fault;
-    snprintf(name, sizeof name, "points_%04ld.vtu", frame);
-    if (!write_points(s, o->folder, name)) return 0;
-    if (mpm_io_pvd_add(file_in(o->folder, "impact.pvd", path, sizeof path), name, (double)s->world.time * 1e3,
-                       &fault) < 0)
-        return report(&fault, path);
-    snprintf(name, sizeof name, "frame_%04ld.png", frame);
-    return write_picture(s, c, file_in(o->folder, name, path, sizeof path));
-}
-
-static int write_summary(const impact *s, const impact_case *c, const output *o, const option *options, int n,
-                         double cpu)
+static int write_summary(const impact *s, const impact_case *c, const output *o, const option *options, int n)
 {
     const impact_result r = impact_measure(s, c);
     const mpm_material *a = &s->material[IMPACT_PARTICLE], *b = &s->material[IMPACT_SUBSTRATE];
     const mpm_world *w = &s->world;
-    const double start = s->start.kinetic;
-    char path[1024];
+    const double start = s->start.kinetic, cpu = o->cpu;
+    char path[MPM_IO_PATH];
     mpm_fault fault;
     mpm_io_json j;
     mpm_io_json_begin(&j, file_in(o->folder, "summary.json", path, sizeof path), &fault);
@@ -224,39 +149,14 @@ static void print_table(const impact *s, const impact_case *c, double cpu)
            (double)mpm_memory(w) / (double)r.all.points);
 }
 
-/* The progress line, about twice a second of CPU time. */
-static void show_progress(const impact *s, clock_t begun, clock_t *shown)
-{
-    mpm_io_progress p;
-    char line[160];
-    if ((double)(clock() - *shown) < 0.5 * (double)CLOCKS_PER_SEC) return;
-    *shown = clock();
-    memset(&p, 0, sizeof p);
-    p.step = s->world.steps;
-    p.steps = s->steps;
-    p.time = (double)s->world.time * 1e3;
-    p.time_unit = "ns";
-    p.points = (double)s->world.points.count;
-    p.elapsed = (double)(clock() - begun) / (double)CLOCKS_PER_SEC;
-    mpm_io_progress_text(line, sizeof line, &p);
-    printf("\r%-90s", line);
-    fflush(stdout);
-}
-
 /* Time integration: one call per phase. */
-static int run(impact *s, const impact_case *c, const output *o, double *cpu)
+static int run(impact *s, const impact_case *c, output *o)
 {
     mpm_world *w = &s->world;
     const mpm_real dt = s->dt;
-    clock_t begun = clock(), shown = begun, writing = 0, mark;
-    long frame = 0;
+    output_start(o, w);
     for (;;) {
-        if (o->frames > 0 && w->steps * (o->frames > 1 ? o->frames - 1 : 1) >= frame * s->steps) {
-            mark = clock();
-            if (!write_frame(s, c, o, frame)) return 0;
-            frame++;
-            writing += clock() - mark;
-        }
+        if (output_due(o, w, s->steps) && !write_frame(s, c, o)) return 0;
         if (w->steps >= s->steps) break;
 
         mpm_status status = mpm_locate(w);           /* points in cell order, nodes for every body */
@@ -277,47 +177,33 @@ static int run(impact *s, const impact_case *c, const output *o, double *cpu)
         if (mpm_stress(w, dt) < 0) return report(&w->fault, "stress"); /* A 3.35 - 3.44 */
         mpm_move(w, dt);                             /* A 3.32, positions */
 
-        if (!o->quiet) show_progress(s, begun, &shown);
+        output_progress(o, w, s->steps);
     }
-    if (!o->quiet) printf("\r%-90s\r", "");
-    *cpu = (double)(clock() - begun - writing) / (double)CLOCKS_PER_SEC;
+    output_progress_end(o);
+    output_cpu(o);
     return 1;
 }
 
 int main(int argc, char **argv)
 {
     impact_case c = impact_case_default();
-    output o = {"impact-out", 9, 0};
+    output o = output_of("impact-out", "impact", "um", "ns", 1);
     option options[IMPACT_OPTIONS];
     int n = impact_options(&c, options);
     const char *about = "A metal particle hits a metal plate: material point method with bonding.\n"
                         "Writes summary.json, impact.png, impact.pvd (ParaView) and frames into the output folder.";
-    char message[300], path[1024];
-    mpm_fault fault;
+    char message[300];
     impact s;
-    double cpu = 0;
     int parsed, ok;
-    option_add(options, &n, "frames", OPTION_LONG, &o.frames,
-               "pictures and ParaView files, evenly in time, both ends included");
-    option_add(options, &n, "out", OPTION_TEXT, &o.folder, "output folder");
-    option_add(options, &n, "quiet", OPTION_FLAG, &o.quiet, "no progress line, no table");
+    output_options(&o, options, &n);
     parsed = options_parse(argc, argv, about, options, n);
     if (parsed) return parsed < 0 ? 1 : 0;
-    if (o.frames < 0 || o.frames > 9999) {
-        fprintf(stderr, "error: --frames %ld: must be 0 .. 9999\n", o.frames);
-        return 1;
-    }
-    if (!impact_begin(&s, &c, message, sizeof message)) {
-        complain(message);
-        return 1;
-    }
-    ok = mpm_io_make_directory(o.folder, &fault) >= 0 || report(&fault, o.folder);
-    if (ok && o.frames > 0)
-        ok = mpm_io_pvd_begin(file_in(o.folder, "impact.pvd", path, sizeof path), &fault) >= 0 || report(&fault, path);
-    ok = ok && run(&s, &c, &o, &cpu) && write_summary(&s, &c, &o, options, n, cpu);
-    if (ok && o.frames > 0) ok = write_picture(&s, &c, file_in(o.folder, "impact.png", path, sizeof path));
+    if (!output_check(&o, message, sizeof message) || !impact_begin(&s, &c, message, sizeof message))
+        return !complain(message);
+    ok = output_begin(&o) && run(&s, &c, &o) && write_summary(&s, &c, &o, options, n);
+    if (ok && o.frames > 0) ok = write_picture(&s, &c, &o);
     if (ok && !o.quiet) {
-        print_table(&s, &c, cpu);
+        print_table(&s, &c, o.cpu);
         printf("\n  %s/summary.json%s\n", o.folder, o.frames > 0 ? ", impact.png, impact.pvd" : "");
     }
     mpm_free(&s.world);

@@ -187,7 +187,6 @@ static inline mpm_desc impact_grid(const impact_case *c)
     d.separation = c->separation;
     d.bond_width = (mpm_real)c->bond_width;
     d.normal = (mpm_normal_rule)case_word("ranked|mvg|average|vertical|logistic", c->normal);
-    d.bodies = 2;
     return d;
 }
 
@@ -228,7 +227,7 @@ static inline mpm_bond impact_bond(const impact_case *c)
     return b;
 }
 
-/* Particle or substrate as a body of its material. */
+/* Particle (its centre is left to be set) or substrate as a body of its material. */
 static inline mpm_body_desc impact_body(mpm_material *m, const impact_case *c, int body)
 {
     const double radians = c->angle * 3.14159265358979323846 / 180;
@@ -242,7 +241,7 @@ static inline mpm_body_desc impact_body(mpm_material *m, const impact_case *c, i
     b.material = m;
     mpm_material_wave_speeds(m, m->density, &b.wave_p, &b.wave_s);
     if (body == IMPACT_PARTICLE) {
-        b.shape = mpm_ellipsoid(0, 0, (mpm_real)(c->gap + h), (mpm_real)a, (mpm_real)a, (mpm_real)h);
+        b.shape = mpm_ellipsoid(0, 0, 0, (mpm_real)a, (mpm_real)a, (mpm_real)h);
         b.velocity[0] = (mpm_real)(c->velocity * sin(radians));
         b.velocity[2] = (mpm_real)(-c->velocity * cos(radians));
     } else {
@@ -253,34 +252,50 @@ static inline mpm_body_desc impact_body(mpm_material *m, const impact_case *c, i
     return b;
 }
 
-/* Builds the scene. Returns 1, or 0 with a message; then nothing is left to free. The world points
-   into *s: do not copy or move it. */
-static inline int impact_begin(impact *s, const impact_case *c, char *message, size_t n)
+/* Builds `count` particles at these centres (um) and the substrate, as the last body, in the grid d. Returns 1, or 0
+   with a message; then nothing is left to free. */
+static inline int impact_build(impact *s, const impact_case *c, mpm_desc d, const double (*center)[3], long count,
+                               char *message, size_t n)
 {
-    mpm_desc d;
-    mpm_body_desc body[2];
+    mpm_body_desc particle, substrate;
     mpm_status status;
-    int i;
-    memset(s, 0, sizeof *s);
-    if (!impact_check(c, message, n)) return 0;
-    s->bond = impact_bond(c);
-    d = impact_grid(c);
-    for (i = 0; i < 2; i++) { /* the substrate last: it leads the normals */
-        if (!impact_metal(&s->material[i], c, i, message, n)) return 0;
-        body[i] = impact_body(&s->material[i], c, i);
-        d.points += mpm_shape_count(&d, &body[i].shape, body[i].spacing);
+    long k;
+    int a;
+    for (a = 0; a < 2; a++)
+        if (!impact_metal(&s->material[a], c, a, message, n)) return 0;
+    particle = impact_body(&s->material[IMPACT_PARTICLE], c, IMPACT_PARTICLE);
+    substrate = impact_body(&s->material[IMPACT_SUBSTRATE], c, IMPACT_SUBSTRATE);
+    d.bodies = (int32_t)count + 1;
+    d.points = mpm_shape_count(&d, &substrate.shape, substrate.spacing);
+    for (k = 0; k < count; k++) {
+        for (a = 0; a < 3; a++) particle.shape.center[a] = (mpm_real)center[k][a];
+        d.points += mpm_shape_count(&d, &particle.shape, particle.spacing);
     }
     status = mpm_init(&s->world, &d, NULL, 0);
-    for (i = 0; i < 2 && status == MPM_OK; i++) status = mpm_body_add(&s->world, &body[i]);
+    for (k = 0; k < count && status == MPM_OK; k++) {
+        for (a = 0; a < 3; a++) particle.shape.center[a] = (mpm_real)center[k][a];
+        status = mpm_body_add(&s->world, &particle);
+    }
+    if (status == MPM_OK) status = mpm_body_add(&s->world, &substrate); /* the last leads the normals */
     if (status != MPM_OK) {
         mpm_io_fault_text(message, n, &s->world.fault);
         mpm_free(&s->world);
         return 0;
     }
-    s->dt = (mpm_real)(c->dt_factor * 0.5) / (body[0].wave_p > body[1].wave_p ? body[0].wave_p : body[1].wave_p);
+    s->bond = impact_bond(c);
+    s->dt = (mpm_real)(c->dt_factor * 0.5) / (particle.wave_p > substrate.wave_p ? particle.wave_p : substrate.wave_p);
     s->steps = (long)ceil(c->time * 1e-3 / (double)s->dt - 1e-9);
     s->start = mpm_body_totals(&s->world, -1);
     return 1;
+}
+
+/* Builds the scene. Returns 1, or 0 with a message; then nothing is left to free. The world points
+   into *s: do not copy or move it. */
+static inline int impact_begin(impact *s, const impact_case *c, char *message, size_t n)
+{
+    const double center[1][3] = {{0, 0, c->gap + impact_half_height(c)}};
+    memset(s, 0, sizeof *s);
+    return impact_check(c, message, n) && impact_build(s, c, impact_grid(c), center, 1, message, n);
 }
 
 /* One whole step with bonding: the loop of examples/impact.c for programs that need not show it.

@@ -12,7 +12,7 @@ int main(int argc, char **argv)
     double spread = 60, height = 0;
     long seed = 1;
     option o[IMPACT_OPTIONS];
-    char message[200];
+    char message[300];
     int n, parsed;
     q = particles_default("full", "many-out");
     q.count = 10;
@@ -25,19 +25,18 @@ int main(int argc, char **argv)
     parsed = options_parse(argc, argv,
                            "Particles at random places and heights. --substrate-diameter 0: spread and one diameter;\n"
                            "--time 0: the fall from the full height and 40 ns. Writes particles.csv, pairs.csv,\n"
-                           "summary.json and frames.",
+                           "summary.json, particles.pvd (ParaView) and frames; run again with the same options after\n"
+                           "an interruption, it goes on.",
                            o, n);
     if (parsed) return parsed < 0;
     if (!case_wants(q.count >= 1 && q.count <= PARTICLES, "count", (double)q.count, "must be 1 .. 500", message,
                     sizeof message) ||
-        !case_wants(q.frames >= 0 && q.frames < 10000, "frames", (double)q.frames, "must be 0 .. 9999", message,
-                    sizeof message) ||
+        !particles_check(&q, message, sizeof message) ||
         !case_wants(spread > 0 && spread < 1e4, "spread", spread, "must be > 0 um", message, sizeof message) ||
         !case_wants(height >= 0 && height < 1e4, "height", height, "must be >= 0 um", message, sizeof message) ||
         !case_wants(q.base.velocity > 0, "velocity", q.base.velocity, "must be > 0 m/s", message, sizeof message))
-        return fprintf(stderr, "error: %s\n", message), 1;
+        return !complain(message);
     if (!(height > 0)) height = particles_height(&q, spread);
-    if (!particles_place(&q, spread, height, seed))
-        return fprintf(stderr, "error: --count %ld: no room for so many; larger --spread or --height\n", q.count), 1;
+    if (!particles_place(&q, spread, height, seed, message, sizeof message)) return !complain(message);
     return particles_main(&q, o, n);
 }

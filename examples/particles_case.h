@@ -1,9 +1,10 @@
-/* particles_case.h - several particles on one substrate: scene, report and pictures that two_particles and
-   many_particles share. The particles are bodies 0 .. count-1 in order, the substrate is the last.
-   SPDX-License-Identifier: MIT */
+/* particles_case.h - several particles on one substrate: scene, report, files and checkpoints that
+   two_particles and many_particles share. The particles are bodies 0 .. count-1 in order, the substrate is
+   the last. SPDX-License-Identifier: MIT */
 #ifndef PARTICLES_CASE_H
 #define PARTICLES_CASE_H
 
+#include "output.h"
 #include "study.h"
 
 #define PARTICLES 500
@@ -12,9 +13,8 @@ typedef struct particles_case {
     impact_case base;            /* of every particle; its gap is not used */
     long count;
     double center[PARTICLES][3]; /* um, over the substrate's face */
-    long frames;
-    const char *folder;
-    int quiet;
+    long stop_after;             /* steps made now, then a checkpoint; 0: never */
+    output out;
 } particles_case;
 
 /* A coarse 3D grid, 100 ns. */
@@ -26,8 +26,8 @@ static inline particles_case particles_default(const char *symmetry, const char 
     q.base.symmetry = symmetry;
     q.base.dt_factor = 0.2;
     q.base.time = 100;
-    q.frames = 4;
-    q.folder = folder;
+    q.out = output_of(folder, "particles", "um", "ns", 1);
+    q.out.frames = 4;
     return q;
 }
 
@@ -49,17 +49,24 @@ static inline double particles_height(const particles_case *q, double spread)
 
 /* Centres in a cylinder over the substrate, at least a diameter and a cell apart, the lowest on the
    substrate. Sets the substrate's width (spread and a diameter) and the time (the fall and 40 ns) where they
-   are 0. Returns 1, or 0 when there is no room. */
-static inline int particles_place(particles_case *q, double spread, double height, long seed)
+   are 0. Returns 1, or 0 with a message. */
+static inline int particles_place(particles_case *q, double spread, double height, long seed, char *message, size_t n)
 {
     const double apart = q->base.diameter + q->base.cell, pi = 3.14159265358979323846;
     uint64_t state = (uint64_t)seed;
     double least = HUGE_VAL;
     long k, other, tries = 0;
+    if (!(fabs(q->base.substrate_diameter) > 0)) q->base.substrate_diameter = spread + q->base.diameter;
+    if (!(fabs(q->base.time) > 0)) q->base.time = 1e3 * height / q->base.velocity + 40;
+    if (!impact_check(&q->base, message, n)) return 0;
     for (k = 0; k < q->count; k++) {
         double *x = q->center[k], r, phi, d2 = HUGE_VAL;
         do {
-            if (tries++ > 200000) return 0;
+            if (tries++ > 200000) {
+                snprintf(message, n, "--count %ld: no room for so many a diameter and a cell (%g um) apart; larger "
+                         "--spread or --height, or smaller --cell", q->count, apart);
+                return 0;
+            }
             r = spread / 2 * sqrt(particles_draw(&state));
             phi = 2 * pi * particles_draw(&state);
             x[0] = r * cos(phi);
@@ -74,8 +81,6 @@ static inline int particles_place(particles_case *q, double spread, double heigh
         least = fmin(least, x[2]);
     }
     for (k = 0; k < q->count; k++) q->center[k][2] += q->base.diameter / 2 - least;
-    if (!(fabs(q->base.substrate_diameter) > 0)) q->base.substrate_diameter = spread + q->base.diameter;
-    if (!(fabs(q->base.time) > 0)) q->base.time = 1e3 * height / q->base.velocity + 40;
     return 1;
 }
 
@@ -101,11 +106,8 @@ static inline int particles_mirrored(const particles_case *q, char *message, siz
 static inline int particles_begin(impact *s, const particles_case *q, char *message, size_t n)
 {
     impact_case room = q->base; /* one case whose grid holds all */
-    mpm_body_desc particle, substrate;
-    mpm_status status;
     mpm_desc d;
     long k;
-    int a;
     memset(s, 0, sizeof *s);
     if (!impact_check(&q->base, message, n)) return 0;
     if (!particles_mirrored(q, message, n)) return 0;
@@ -120,35 +122,10 @@ static inline int particles_begin(impact *s, const particles_case *q, char *mess
         room.substrate_diameter = fmax(room.substrate_diameter, 2 * reach);
         room.gap = fmax(room.gap, x[2] - q->base.diameter / 2);
     }
-    for (a = 0; a < 2; a++)
-        if (!impact_metal(&s->material[a], &q->base, a, message, n)) return 0;
-    particle = impact_body(&s->material[0], &q->base, IMPACT_PARTICLE);
-    substrate = impact_body(&s->material[1], &q->base, IMPACT_SUBSTRATE);
     d = impact_grid(&room);
-    d.bodies = (int32_t)q->count + 1;
     d.user_fields = 1; /* whom a point bonded to */
-    d.points = mpm_shape_count(&d, &substrate.shape, substrate.spacing);
-    for (k = 0; k < q->count; k++) {
-        for (a = 0; a < 3; a++) particle.shape.center[a] = (mpm_real)q->center[k][a];
-        d.points += mpm_shape_count(&d, &particle.shape, particle.spacing);
-    }
-    s->bond = impact_bond(&q->base);
+    if (!impact_build(s, &q->base, d, q->center, q->count, message, n)) return 0;
     s->bond.partner = 0;
-    status = mpm_init(&s->world, &d, NULL, 0);
-    for (k = 0; k < q->count && status == MPM_OK; k++) {
-        for (a = 0; a < 3; a++) particle.shape.center[a] = (mpm_real)q->center[k][a];
-        status = mpm_body_add(&s->world, &particle);
-    }
-    if (status == MPM_OK) status = mpm_body_add(&s->world, &substrate);
-    if (status != MPM_OK) {
-        mpm_io_fault_text(message, n, &s->world.fault);
-        mpm_free(&s->world);
-        return 0;
-    }
-    s->dt = (mpm_real)(q->base.dt_factor * 0.5) /
-            (particle.wave_p > substrate.wave_p ? particle.wave_p : substrate.wave_p);
-    s->steps = (long)ceil(q->base.time * 1e-3 / (double)s->dt - 1e-9);
-    s->start = mpm_body_totals(&s->world, -1);
     return 1;
 }
 
@@ -239,60 +216,47 @@ static inline void particles_report(const impact *s, const particles_case *q, pa
     }
 }
 
-/* Cuts through x-z at y = 0: plastic strain and bodies. */
-static inline int particles_picture(const impact *s, const particles_case *q, const char *path, char *message, size_t n)
+/* ---- files --------------------------------------------------------------------------------- */
+
+/* A frame: cuts through x-z at y = 0 with plastic strain and bodies; for ParaView also whom a point bonds to. */
+static inline int particles_frame(const impact *s, particles_case *q)
 {
-    const mpm_world *w = &s->world;
-    mpm_io_cut_desc cut[2];
-    mpm_fault fault;
-    char time[32], title[96];
+    const mpm_points *p = &s->world.points;
     double edge = q->base.substrate_diameter / 2 + q->base.diameter / 2, top = q->base.diameter;
+    int32_t *partner = (int32_t *)malloc((size_t)p->count * sizeof *partner), i;
+    output_picture picture;
+    mpm_io_field field;
     long k;
-    int i;
-    snprintf(time, sizeof time, "t = %.1f ns", (double)w->time * 1e3);
-    snprintf(title, sizeof title, "%ld x %s, %g um at %g m/s", q->count, q->base.material, q->base.diameter,
-             q->base.velocity);
+    int ok;
+    if (!partner) return complain("no memory for output");
+    for (i = 0; i < p->count; i++) partner[i] = (int32_t)p->user[0][i] - 1;
+    field = mpm_io_int32("bonded to", partner); /* the body; -1: none */
     for (k = 0; k < q->count; k++) {
         edge = fmax(edge, fabs(q->center[k][0]) + q->base.diameter);
         top = fmax(top, q->center[k][2] + q->base.diameter / 2);
     }
-    for (i = 0; i < 2; i++) {
-        cut[i] = mpm_io_cut_of(w, i ? NULL : w->points.plastic_strain);
-        cut[i].at = w->desc.geometry == MPM_3D ? q->base.spacing / 2 : 0;
-        cut[i].mirror = w->desc.side[0] == MPM_SIDE_SYMMETRY;
-        cut[i].window[0] = -1.05 * edge;
-        cut[i].window[1] = 1.05 * edge;
-        cut[i].window[2] = -1.05 * q->base.substrate_height;
-        cut[i].window[3] = 1.05 * top;
-        cut[i].length_unit = "um";
-        cut[i].time = time;
-        cut[i].title = i ? "bodies" : title;
-    }
-    cut[0].label = "effective plastic strain";
-    cut[0].low = 0;
-    cut[0].high = 4;
-    if (mpm_io_cut_png(path, cut, 2, 2, 800, &fault) >= 0) return 1;
-    mpm_io_fault_text(message, n, &fault);
-    return 0;
+    output_cuts(&q->out, &s->world, q->base.spacing, NULL, &picture);
+    output_window(&picture, 1.05 * edge, -1.05 * q->base.substrate_height, 1.05 * top);
+    picture.cut[1].title = "bodies";
+    snprintf(picture.title, sizeof picture.title, "%ld x %s, %g um at %g m/s", q->count, q->base.material,
+             q->base.diameter, q->base.velocity);
+    ok = output_frame(&q->out, &s->world, &field, 1, &picture);
+    free(partner);
+    return ok;
 }
 
-/* particles.csv, pairs.csv and summary.json. */
-static inline int particles_write(const impact *s, const particles_case *q, const particle_report *r,
-                                  const option *o, int n, double cpu, mpm_fault *fault)
+/* particles.csv */
+static inline int particles_table(const particles_case *q, const particle_report *r)
 {
-    const mpm_world *w = &s->world;
-    const mpm_bond_measure all = mpm_bond_measure_body(w, -1);
-    const mpm_totals sums = mpm_body_totals(w, -1);
     char path[MPM_IO_PATH];
-    long fates[5] = {0, 0, 0, 0, 0};
+    mpm_fault fault;
     mpm_io_csv t;
-    mpm_io_json j;
-    int32_t a, b;
+    long a;
     int k;
-    snprintf(path, sizeof path, "%s/particles.csv", q->folder);
-    mpm_io_csv_begin(&t, path, "particle,x_um,y_um,z_um,fate,pbcp_percent,contacted_points,bonded_points,bonded_nodes,"
-                               "v_z_m_s,v_along_m_s,ejected_mass_share,height_um", "one row per particle", fault);
-    for (a = 0; a < (int32_t)q->count; a++) {
+    mpm_io_csv_begin(&t, file_in(q->out.folder, "particles.csv", path, sizeof path),
+                     "particle,x_um,y_um,z_um,fate,pbcp_percent,contacted_points,bonded_points,bonded_nodes,"
+                     "v_z_m_s,v_along_m_s,ejected_mass_share,height_um", "one row per particle", &fault);
+    for (a = 0; a < q->count; a++) {
         mpm_io_csv_integer(&t, a);
         for (k = 0; k < 3; k++) mpm_io_csv_real(&t, (mpm_real)q->center[a][k]);
         mpm_io_csv_text(&t, particle_fate_text[r[a].fate]);
@@ -304,17 +268,26 @@ static inline int particles_write(const impact *s, const particles_case *q, cons
         mpm_io_csv_real(&t, (mpm_real)r[a].v_along);
         mpm_io_csv_real(&t, (mpm_real)r[a].ejected);
         mpm_io_csv_real(&t, (mpm_real)r[a].height);
-        fates[r[a].fate]++;
     }
-    if (mpm_io_csv_end(&t, fault) < 0) return 0;
-    snprintf(path, sizeof path, "%s/pairs.csv", q->folder);
-    mpm_io_csv_begin(&t, path, "a,b,pbcp_percent,contacted_points,bonded_points,bonded_nodes,held_nodes",
-                     "surfaces between two bodies; the last body is the substrate", fault);
+    return mpm_io_csv_end(&t, &fault) >= 0 || report(&fault, path);
+}
+
+/* pairs.csv */
+static inline int particles_pairs(const impact *s, const particles_case *q)
+{
+    char path[MPM_IO_PATH];
+    mpm_fault fault;
+    mpm_io_csv t;
+    int32_t a, b;
+    mpm_io_csv_begin(&t, file_in(q->out.folder, "pairs.csv", path, sizeof path),
+                     "a,b,pbcp_percent,contacted_points,bonded_points,bonded_nodes,held_nodes",
+                     "surfaces between two bodies; the last body is the substrate", &fault);
     for (a = 0; a < (int32_t)q->count; a++)
         for (b = a + 1; b <= (int32_t)q->count; b++) {
             mpm_bond_measure m;
-            const mpm_interface f = mpm_bond_interface(w, a, b);
-            if (mpm_bond_measure_pair(&s->bond, w, a, b, &m) < 0 || (m.contacted == 0 && f.nodes == 0)) continue;
+            const mpm_interface f = mpm_bond_interface(&s->world, a, b);
+            if (mpm_bond_measure_pair(&s->bond, &s->world, a, b, &m) < 0 || (m.contacted == 0 && f.nodes == 0))
+                continue;
             mpm_io_csv_integer(&t, a);
             mpm_io_csv_integer(&t, b);
             mpm_io_csv_real(&t, (mpm_real)m.pbcp);
@@ -323,12 +296,25 @@ static inline int particles_write(const impact *s, const particles_case *q, cons
             mpm_io_csv_integer(&t, f.bonded);
             mpm_io_csv_integer(&t, f.held);
         }
-    if (mpm_io_csv_end(&t, fault) < 0) return 0;
-    snprintf(path, sizeof path, "%s/summary.json", q->folder);
-    mpm_io_json_begin(&j, path, fault);
+    return mpm_io_csv_end(&t, &fault) >= 0 || report(&fault, path);
+}
+
+/* summary.json */
+static inline int particles_summary(const impact *s, const particles_case *q, const particle_report *r,
+                                    const option *o, int n)
+{
+    const mpm_world *w = &s->world;
+    const mpm_totals sums = mpm_body_totals(w, -1);
+    long fates[5] = {0, 0, 0, 0, 0}, a;
+    char path[MPM_IO_PATH];
+    mpm_fault fault;
+    mpm_io_json j;
+    int k;
+    for (a = 0; a < q->count; a++) fates[r[a].fate]++;
+    mpm_io_json_begin(&j, file_in(q->out.folder, "summary.json", path, sizeof path), &fault);
     mpm_io_json_integer(&j, "particles", q->count);
     for (k = 0; k < 5; k++) mpm_io_json_integer(&j, particle_fate_text[k], fates[k]);
-    mpm_io_json_number(&j, "pbcp_percent", all.pbcp);
+    mpm_io_json_number(&j, "pbcp_percent", mpm_bond_measure_body(w, -1).pbcp);
     mpm_io_json_integer(&j, "points", sums.points);
     mpm_io_json_integer(&j, "steps", w->steps);
     mpm_io_json_number(&j, "time_ns", (double)w->time * 1e3);
@@ -337,9 +323,11 @@ static inline int particles_write(const impact *s, const particles_case *q, cons
                        case_share(sums.kinetic + sums.internal + w->ledger.absorbed + w->ledger.contact +
                                       w->ledger.bond + w->ledger.walls - s->start.kinetic - s->start.internal,
                                   s->start.kinetic));
-    mpm_io_json_number(&j, "cpu_seconds", cpu);
+    mpm_io_json_integer(&j, "floor_hits", s->bond.floor_hits);
+    mpm_io_json_integer(&j, "bond_increments", s->bond.increments);
+    mpm_io_json_number(&j, "cpu_seconds", q->out.cpu);
     options_json(&j, o, n);
-    return mpm_io_json_end(&j, fault) >= 0;
+    return mpm_io_json_end(&j, &fault) >= 0 || report(&fault, path);
 }
 
 static inline void particles_print(const particles_case *q, const particle_report *r, const impact *s)
@@ -350,52 +338,161 @@ static inline void particles_print(const particles_case *q, const particle_repor
     for (k = 0; k < shown; k++)
         printf("  %8ld   %-11s   %6.2f   %12ld   %7.2f   %9.2f   %9.1f\n", k, particle_fate_text[r[k].fate],
                r[k].bond.pbcp, r[k].nodes, r[k].v_z, r[k].v_along, 100 * r[k].ejected);
-    printf("\n  PBCP of all surfaces %.2f %%; %s/particles.csv, pairs.csv, frames, summary.json\n",
-           mpm_bond_measure_body(&s->world, -1).pbcp, q->folder);
+    printf("\n  PBCP of all surfaces %.2f %%; %s/particles.csv, pairs.csv, summary.json%s\n",
+           mpm_bond_measure_body(&s->world, -1).pbcp, q->out.folder, q->out.frames > 0 ? ", particles.pvd" : "");
 }
 
-/* The rest of main(): runs the scene, with a progress line, and writes everything. Returns 0, or 1 after
-   a message. */
-static inline int particles_main(const particles_case *q, const option *o, int n)
+/* Whether the folder holds this very scene, finished: the options in its summary, the centres in its table. */
+static inline int particles_finished(const particles_case *q)
 {
-    static particle_report report[PARTICLES];
-    char message[400], path[MPM_IO_PATH];
-    clock_t begun = clock();
-    study progress = study_of(q->folder);
-    impact s;
-    mpm_fault fault = {MPM_OK, NULL, 0, -1};
-    long frame = 0;
-    if (!particles_begin(&s, q, message, sizeof message)) return fprintf(stderr, "error: %s\n", message), 1;
-    progress.quiet = q->quiet;
-    progress.planned = 1;
-    snprintf(progress.label, sizeof progress.label, "%ld particles, %ld points", q->count, (long)s.world.points.count);
-    if (mpm_io_make_directory(q->folder, &fault) < 0) goto fail;
-    for (;;) {
-        if (q->frames > 0 && s.world.steps * (q->frames > 1 ? q->frames - 1 : 1) >= frame * s.steps) {
-            snprintf(path, sizeof path, "%s/frame_%04ld.png", q->folder, frame++);
-            if (!particles_picture(&s, q, path, message, sizeof message)) goto say;
-        }
-        if (s.world.steps >= s.steps) break;
-        if (impact_step(&s) < 0) {
-            fault = s.world.fault;
-            goto fail;
-        }
-        if (s.world.steps % 16 == 0)
-            study_progress(&progress, (double)s.world.steps / (double)s.steps,
-                           (double)(clock() - begun) / CLOCKS_PER_SEC);
+    static char text[200000];
+    impact_case base = q->base, usual = impact_case_default();
+    option o[IMPACT_OPTIONS], plain[IMPACT_OPTIONS];
+    int n = impact_options(&base, o), plain_n = impact_options(&usual, plain), a;
+    char path[MPM_IO_PATH], *row;
+    const char *count;
+    long k;
+    option_drop(o, &n, "gap"); /* by the places of the particles */
+    option_drop(plain, &plain_n, "gap");
+    text_in(file_in(q->out.folder, "summary.json", path, sizeof path), text, sizeof text);
+    count = json_value(text, "particles");
+    if (!count || strtol(count, NULL, 10) != q->count || !options_match(text, o, plain, n)) return 0;
+    text_in(file_in(q->out.folder, "particles.csv", path, sizeof path), text, sizeof text);
+    row = strstr(text, "height_um\n"); /* ends the line of the names */
+    for (k = 0; k < q->count; k++) {
+        row = row ? strchr(row, '\n') : NULL;
+        if (!row || strtol(row + 1, &row, 10) != k) return 0;
+        for (a = 0; a < 3; a++)
+            if (*row != ',' || fabs((double)((mpm_real)strtod(row + 1, &row) - (mpm_real)q->center[k][a])) > 0) return 0;
     }
-    study_progress_end(&progress);
-    particles_report(&s, q, report);
-    if (!particles_write(&s, q, report, o, n, (double)(clock() - begun) / CLOCKS_PER_SEC, &fault)) goto fail;
-    if (!q->quiet) particles_print(q, report, &s);
-    mpm_free(&s.world);
-    return 0;
-fail:
-    mpm_io_fault_text(message, sizeof message, &fault);
-say:
-    fprintf(stderr, "error: %s\n", message);
-    mpm_free(&s.world);
     return 1;
+}
+
+/* ---- interruptions ------------------------------------------------------------------------- */
+
+#define PARTICLES_CHECKPOINT 60 /* CPU seconds from one to the next */
+
+/* A number of this very scene and its frames; not of the folder. */
+static inline uint64_t particles_mark(const particles_case *q)
+{
+    char text[4000];
+    uint64_t h;
+    long k;
+    study_key(&q->base, 0, text, sizeof text);
+    h = study_hash(STUDY_HASH, text);
+    snprintf(text, sizeof text, ", %ld particles, %ld frames", q->count, q->out.frames);
+    h = study_hash(h, text);
+    for (k = 0; k < q->count; k++) {
+        snprintf(text, sizeof text, ", %.17g %.17g %.17g", q->center[k][0], q->center[k][1], q->center[k][2]);
+        h = study_hash(h, text);
+    }
+    return h;
+}
+
+static inline mpm_io_blob particles_blob(const char *name, void *data, size_t bytes)
+{
+    mpm_io_blob b;
+    b.name = name;
+    b.data = data;
+    b.bytes = bytes;
+    return b;
+}
+
+/* Writes the checkpoint, or reads it (nothing is changed if it is none of this scene): the world, and what is
+   counted beside it. The name of the first blob says of which scene they are. */
+static inline mpm_status particles_checkpoint(impact *s, particles_case *q, int write, const char *path,
+                                              mpm_fault *fault)
+{
+    mpm_io_blob blob[MPM_IO_WORLD_BLOBS + PARTICLES + 7]; /* the substrate too */
+    uint64_t mark = particles_mark(q);
+    char name[40];
+    int n = 0;
+    snprintf(name, sizeof name, "scene %08lx%08lx", (unsigned long)(mark >> 32), (unsigned long)(mark & 0xffffffffu));
+    blob[n++] = particles_blob(name, &mark, sizeof mark);
+    n += mpm_io_world_blobs(&s->world, blob + n);
+    blob[n++] = particles_blob("start", &s->start, sizeof s->start);
+    blob[n++] = particles_blob("floor hits", &s->bond.floor_hits, sizeof s->bond.floor_hits);
+    blob[n++] = particles_blob("bond increments", &s->bond.increments, sizeof s->bond.increments);
+    blob[n++] = particles_blob("frame", &q->out.frame, sizeof q->out.frame);
+    blob[n++] = particles_blob("cpu seconds", &q->out.cpu, sizeof q->out.cpu);
+    return write ? mpm_io_checkpoint_write(path, blob, n, fault) : mpm_io_checkpoint_read(path, blob, n, fault);
+}
+
+static inline int particles_save(impact *s, particles_case *q)
+{
+    const clock_t mark = clock();
+    char path[MPM_IO_PATH];
+    mpm_fault fault;
+    const int ok = particles_checkpoint(s, q, 1, file_in(q->out.folder, "checkpoint.bin", path, sizeof path),
+                                        &fault) >= 0;
+    q->out.writing += clock() - mark;
+    return ok || report(&fault, path);
+}
+
+/* Goes on where an earlier run of this scene was left, or begins the output. Returns 1, or 0 after a message. */
+static inline int particles_resume(impact *s, particles_case *q)
+{
+    char path[MPM_IO_PATH], text[200];
+    mpm_fault fault;
+    FILE *f = fopen(file_in(q->out.folder, "checkpoint.bin", path, sizeof path), "rb");
+    if (f) {
+        fclose(f);
+        if (particles_checkpoint(s, q, 0, path, &fault) >= 0) {
+            if (!q->out.quiet) printf("going on from step %ld of %ld\n", s->world.steps, s->steps);
+            return 1;
+        }
+        mpm_io_fault_text(text, sizeof text, &fault);
+        fprintf(stderr, "%s is of other options or damaged (%s): starting afresh\n", path, text);
+    }
+    remove(file_in(q->out.folder, "summary.json", path, sizeof path)); /* it would stand for this run */
+    return output_begin(&q->out);
+}
+
+/* ---- main ---------------------------------------------------------------------------------- */
+
+/* Steps to the end. Returns 1; 0 after a message; -1 when stopped before, with a checkpoint. */
+static inline int particles_run(impact *s, particles_case *q)
+{
+    const mpm_world *w = &s->world;
+    double saved = q->out.cpu;
+    output_start(&q->out, w);
+    for (;;) {
+        if (output_due(&q->out, w, s->steps) && !particles_frame(s, q)) return 0;
+        if (w->steps >= s->steps) break;
+        if (q->stop_after > 0 && w->steps - q->out.first >= q->stop_after) break;
+        if (output_cpu(&q->out) - saved >= PARTICLES_CHECKPOINT) {
+            if (!particles_save(s, q)) return 0;
+            saved = q->out.cpu;
+        }
+        if (impact_step(s) < 0) return report(&w->fault, "step");
+        output_progress(&q->out, w, s->steps);
+    }
+    output_progress_end(&q->out);
+    output_cpu(&q->out);
+    if (w->steps >= s->steps) return 1;
+    return particles_save(s, q) ? -1 : 0;
+}
+
+/* The rest of main(): runs the scene and writes everything. Returns 0; 1 after a message; 3 when stopped. */
+static inline int particles_main(particles_case *q, const option *o, int n)
+{
+    static particle_report r[PARTICLES];
+    char message[400], path[MPM_IO_PATH];
+    impact s;
+    int status;
+    if (!particles_begin(&s, q, message, sizeof message)) return !complain(message);
+    status = particles_resume(&s, q) ? particles_run(&s, q) : 0;
+    if (status < 0) printf("stopped at step %ld of %ld; run again to go on\n", s.world.steps, s.steps);
+    if (status > 0) {
+        particles_report(&s, q, r);
+        status = particles_table(q, r) && particles_pairs(&s, q) && particles_summary(&s, q, r, o, n);
+    }
+    if (status > 0) {
+        remove(file_in(q->out.folder, "checkpoint.bin", path, sizeof path));
+        if (!q->out.quiet) particles_print(q, r, &s);
+    }
+    mpm_free(&s.world);
+    return status > 0 ? 0 : status < 0 ? 3 : 1;
 }
 
 /* The options that both programs have. */
@@ -403,10 +500,17 @@ static inline int particles_options(particles_case *q, option *o)
 {
     int n = impact_options(&q->base, o);
     option_drop(o, &n, "gap"); /* by the places of the particles */
-    option_add(o, &n, "frames", OPTION_LONG, &q->frames, "pictures, evenly in time");
-    option_add(o, &n, "out", OPTION_TEXT, &q->folder, "output folder");
-    option_add(o, &n, "quiet", OPTION_FLAG, &q->quiet, "no progress line, no table");
+    output_options(&q->out, o, &n);
+    option_add(o, &n, "stop-after", OPTION_LONG, &q->stop_after,
+               "write a checkpoint after so many steps and stop; 0: never");
     return n;
+}
+
+/* ... and what they may be. */
+static inline int particles_check(const particles_case *q, char *message, size_t n)
+{
+    return output_check(&q->out, message, n) &&
+           case_wants(q->stop_after >= 0, "stop-after", (double)q->stop_after, "must be >= 0", message, n);
 }
 
 #endif

@@ -42,4 +42,50 @@ static inline void options_json(mpm_io_json *j, const option *options, int n)
     mpm_io_json_close(j);
 }
 
+/* The text of a file, up to room - 1 bytes; "" if there is none. Returns text. */
+static inline const char *text_in(const char *path, char *text, size_t room)
+{
+    FILE *f = fopen(path, "rb");
+    size_t n = 0;
+    if (f) {
+        n = fread(text, 1, room - 1, f);
+        fclose(f);
+    }
+    text[n] = 0;
+    return text;
+}
+
+/* What stands behind "key": in the text of a summary, or NULL. */
+static inline const char *json_value(const char *text, const char *key)
+{
+    char quoted[80];
+    const char *at;
+    snprintf(quoted, sizeof quoted, "\"%s\": ", key);
+    at = strstr(text, quoted);
+    return at ? at + strlen(quoted) : NULL;
+}
+
+/* Whether a summary was made with these n options: each is there with its value, or is not there and has its
+   value of `plain`, the same table with the defaults. */
+static inline int options_match(const char *summary, const option *o, const option *plain, int n)
+{
+    const char *block = json_value(summary, "options");
+    char text[256], other[256];
+    int k;
+    if (!block) return 0;
+    for (k = 0; k < n; k++) {
+        const char *at = json_value(block, o[k].name);
+        const int quoted = o[k].type == OPTION_TEXT || o[k].type == OPTION_FLAG;
+        size_t length;
+        option_text(&o[k], text, sizeof text);
+        length = strlen(text);
+        if (!at) option_text(&plain[k], other, sizeof other);
+        else if (!quoted) snprintf(other, sizeof other, "%.15g", strtod(at, NULL));
+        else if (*at == '"' && !strncmp(at + 1, text, length) && at[1 + length] == '"') continue;
+        else return 0;
+        if (strcmp(text, other)) return 0;
+    }
+    return 1;
+}
+
 #endif

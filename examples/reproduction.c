@@ -310,20 +310,9 @@ static int read_particles(const char *folder, particle_row *row, int room)
 static double read_summary(const char *folder, const char *key)
 {
     static char text[20000];
-    char path[MPM_IO_PATH], quoted[64];
-    const char *at;
-    size_t n = 0;
-    FILE *f;
-    snprintf(path, sizeof path, "%s/summary.json", folder);
-    f = fopen(path, "rb");
-    if (f) {
-        n = fread(text, 1, sizeof text - 1, f);
-        fclose(f);
-    }
-    text[n] = 0;
-    snprintf(quoted, sizeof quoted, "\"%s\":", key);
-    at = strstr(text, quoted);
-    return at ? strtod(at + strlen(quoted), NULL) : -1;
+    char path[MPM_IO_PATH];
+    const char *at = json_value(text_in(file_in(folder, "summary.json", path, sizeof path), text, sizeof text), key);
+    return at ? strtod(at, NULL) : -1;
 }
 
 /* Two particles of 14 um, the second aside and its centre 30 um up: on which grid and how whole, on which
@@ -360,15 +349,15 @@ static void two_scene(particles_case *q, const two_run *r)
     q->center[1][2] = 30;
 }
 
-/* Runs a scene unless its summary, which is written last, is there. As study_need. */
+/* Runs a scene unless the folder holds it. As study_need. */
 static int need_particles(work *w, particles_case *q, const char *folder)
 {
     option o[IMPACT_OPTIONS];
     const int n = particles_options(q, o);
-    if (read_summary(folder, "particles") > 0) return 1;
+    q->out.folder = folder;
+    q->out.quiet = w->s.quiet;
+    if (particles_finished(q)) return 1;
     if (w->s.limit >= 0 && w->s.fresh >= w->s.limit) return -1;
-    q->folder = folder;
-    q->quiet = w->s.quiet;
     w->s.fresh++;
     if (particles_main(q, o, n)) {
         snprintf(w->message, sizeof w->message, "the scene of %.300s failed", folder);
@@ -467,7 +456,7 @@ static int ten_particles(work *w)
     q.base.spacing = g.spacing;
     q.count = 10;
     q.base.substrate_diameter = q.base.time = 0;
-    if (!particles_place(&q, spread, particles_height(&q, spread), 1)) return 0;
+    if (!particles_place(&q, spread, particles_height(&q, spread), 1, w->message, sizeof w->message)) return 0;
     snprintf(folder, sizeof folder, "%s/ten_%g_%g_%g", w->s.folder, g.cell, g.spacing, spread);
     if ((status = need_particles(w, &q, folder)) <= 0) return status;
     say(w, "### A-ten: ten particles\n\nTen of 14 um at 810 m/s at random places and heights, 3D, %.3g/%.3g um, after "

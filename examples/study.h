@@ -270,11 +270,18 @@ static inline int study_run(study *s, const impact_case *c, double *value, char 
 
 /* ---- finished runs ------------------------------------------------------------------------- */
 
-/* folder/runs/<hash of the key>.json; the hash is FNV-1a, 64 bits. */
+/* FNV-1a, 64 bits, of a text; `h`: the hash of what goes before it, or STUDY_HASH. */
+#define STUDY_HASH UINT64_C(14695981039346656037)
+static inline uint64_t study_hash(uint64_t h, const char *text)
+{
+    for (; *text; text++) h = (h ^ (uint64_t)(unsigned char)*text) * UINT64_C(1099511628211);
+    return h;
+}
+
+/* folder/runs/<hash of the key>.json */
 static inline void study_path(const study *s, const char *key, char *path, size_t n)
 {
-    uint64_t h = UINT64_C(14695981039346656037);
-    for (; *key; key++) h = (h ^ (uint64_t)(unsigned char)*key) * UINT64_C(1099511628211);
+    const uint64_t h = study_hash(STUDY_HASH, key);
     snprintf(path, n, "%s/runs/%08lx%08lx.json", s->folder, (unsigned long)(h >> 32), (unsigned long)(h & 0xffffffffu));
 }
 

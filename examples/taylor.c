@@ -9,89 +9,34 @@
    The loop in run() is the method, one call per phase. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "taylor_case.h"
-#include "program.h"
+#include "output.h"
 
-#include <time.h>
-
-typedef struct output {
-    const char *folder;
-    long frames;
-    int quiet;
-} output;
-
-/* Two cuts through the axis: plastic strain and temperature. */
-static int write_picture(const taylor *s, const taylor_case *c, const char *path)
+/* Plastic strain and temperature of the section through the axis. */
+static void describe_picture(const taylor *s, const taylor_case *c, const output *o, output_picture *p)
 {
-    const mpm_world *w = &s->world;
-    mpm_io_cut_desc cut[2];
-    mpm_fault fault;
-    char time[32], title[96];
-    int i;
-    snprintf(time, sizeof time, "t = %.1f us", (double)w->time * 1e3);
-    snprintf(title, sizeof title, "%s %s, %g m/s", c->material, c->model, c->velocity);
-    for (i = 0; i < 2; i++) {
-        cut[i] = mpm_io_cut_of(w, i == 0 ? w->points.plastic_strain : w->points.temperature);
-        cut[i].at = w->desc.geometry == MPM_3D ? s->spacing / 2 : 0;
-        cut[i].mirror = 1;
-        cut[i].window[0] = -2.6 * s->radius;
-        cut[i].window[1] = 2.6 * s->radius;
-        cut[i].window[2] = -0.03 * s->length;
-        cut[i].window[3] = 1.05 * s->length;
-        cut[i].length_unit = "mm";
-        cut[i].time = time;
-    }
-    cut[0].title = title;
-    cut[0].label = "effective plastic strain";
-    cut[0].low = 0;
-    cut[0].high = 3;
-    cut[1].label = "temperature (K)";
-    cut[1].map = MPM_IO_HEAT;
-    cut[1].low = c->temperature;
-    cut[1].high = c->temperature + 500;
-    if (mpm_io_cut_png(path, cut, 2, 2, 800, &fault) < 0) return report(&fault, path);
-    return 1;
+    output_cuts(o, &s->world, s->spacing, s->world.points.temperature, p);
+    output_window(p, 2.6 * s->radius, -0.03 * s->length, 1.05 * s->length);
+    output_heat(p, c->temperature, c->temperature + 500);
+    p->cut[0].high = 3;
+    snprintf(p->title, sizeof p->title, "%s %s, %g m/s", c->material, c->model, c->velocity);
 }
 
-/* All that ParaView can show, in mm, m/s, MPa, K. */
-static int write_points(const taylor *s, const char *path)
+/* With the places at which the points began. */
+static int write_frame(const taylor *s, const taylor_case *c, output *o)
 {
-    const mpm_points *p = &s->world.points;
-    mpm_io_vtu_desc d = mpm_io_vtu_desc_default();
-    mpm_io_field field[9];
-    mpm_fault fault;
-    int a;
-    field[0] = mpm_io_vector("velocity (m/s)", p->v[0], p->v[1], p->v[2], 1);
-    field[1] = mpm_io_tensor("stress (MPa)", p->stress[0], p->stress[1], p->stress[2], p->stress[3], p->stress[4],
-                             p->stress[5], 1);
-    field[2] = mpm_io_scalar("density (g/cm3)", p->density, 1e3);
-    field[3] = mpm_io_scalar("temperature (K)", p->temperature, 1);
-    field[4] = mpm_io_scalar("plastic strain", p->plastic_strain, 1);
-    field[5] = mpm_io_scalar("plastic strain rate (1/us)", p->plastic_rate, 1e-3);
-    field[6] = mpm_io_scalar("plastic energy density (MPa)", p->plastic_work, 1);
-    field[7] = mpm_io_scalar("radius at the start (mm)", p->user[0], 1);
-    field[8] = mpm_io_scalar("height at the start (mm)", p->user[1], 1);
-    d.count = (size_t)p->count;
-    for (a = 0; a < 3; a++) d.x[a] = p->x[a];
-    d.fields = field;
-    d.field_count = 9;
-    d.time = (double)s->world.time * 1e3;
-    d.float32 = 1;
-    d.note = "taylor: lengths mm, time us";
-    return mpm_io_vtu(path, &d, &fault) >= 0 ? 1 : report(&fault, path);
+    mpm_io_field start[2];
+    output_picture p;
+    start[0] = mpm_io_scalar("radius at the start (mm)", s->world.points.user[0], 1);
+    start[1] = mpm_io_scalar("height at the start (mm)", s->world.points.user[1], 1);
+    describe_picture(s, c, o, &p);
+    return output_frame(o, &s->world, start, 2, &p);
 }
 
-/* Frame number `frame` of the series: points for ParaView and a picture. */
-static int write_frame(const taylor *s, const taylor_case *c, const output *o, long frame)
+static int write_picture(const taylor *s, const taylor_case *c, output *o)
 {
-    char name[64], path[1024];
-    mpm_fault fault;
-    snprintf(name, sizeof name, "points_%04ld.vtu", frame);
-    if (!write_points(s, file_in(o->folder, name, path, sizeof path))) return 0;
-    if (mpm_io_pvd_add(file_in(o->folder, "taylor.pvd", path, sizeof path), name, (double)s->world.time * 1e3,
-                       &fault) < 0)
-        return report(&fault, path);
-    snprintf(name, sizeof name, "frame_%04ld.png", frame);
-    return write_picture(s, c, file_in(o->folder, name, path, sizeof path));
+    output_picture p;
+    describe_picture(s, c, o, &p);
+    return output_png(o, &p, "taylor.png");
 }
 
 static int write_profile(const taylor *s, const taylor_row *row, const output *o)
@@ -112,8 +57,7 @@ static int write_profile(const taylor *s, const taylor_row *row, const output *o
     return mpm_io_csv_end(&t, &fault) >= 0 ? 1 : report(&fault, path);
 }
 
-static int write_summary(const taylor *s, const taylor_result *r, const output *o, const option *options, int n,
-                         double cpu)
+static int write_summary(const taylor *s, const taylor_result *r, const output *o, const option *options, int n)
 {
     const mpm_world *w = &s->world;
     char path[1024];
@@ -138,7 +82,7 @@ static int write_summary(const taylor *s, const taylor_result *r, const output *
     mpm_io_json_integer(&j, "steps", w->steps);
     mpm_io_json_number(&j, "dt_us", (double)s->dt * 1e3);
     mpm_io_json_number(&j, "time_us", (double)w->time * 1e3);
-    mpm_io_json_number(&j, "cpu_seconds", cpu);
+    mpm_io_json_number(&j, "cpu_seconds", o->cpu);
     options_json(&j, options, n);
     if (mpm_io_json_end(&j, &fault) < 0) return report(&fault, path);
     return 1;
@@ -161,19 +105,13 @@ static void print_table(const taylor *s, const taylor_case *c, const taylor_resu
 }
 
 /* Time integration: one call per phase. */
-static int run(taylor *s, const taylor_case *c, const output *o, double *cpu)
+static int run(taylor *s, const taylor_case *c, output *o)
 {
     mpm_world *w = &s->world;
     const mpm_real dt = s->dt;
-    clock_t begun = clock(), writing = 0, mark;
-    long frame = 0;
+    output_start(o, w);
     for (;;) {
-        if (o->frames > 0 && w->steps * (o->frames > 1 ? o->frames - 1 : 1) >= frame * s->steps) {
-            mark = clock();
-            if (!write_frame(s, c, o, frame)) return 0;
-            frame++;
-            writing += clock() - mark;
-        }
+        if (output_due(o, w, s->steps) && !write_frame(s, c, o)) return 0;
         if (w->steps >= s->steps) break;
 
         mpm_status status = mpm_locate(w);   /* points in cell order, nodes for the body */
@@ -189,23 +127,25 @@ static int run(taylor *s, const taylor_case *c, const output *o, double *cpu)
         mpm_musl(w, dt);                     /* nodal velocity from it */
         if (mpm_stress(w, dt) < 0) return report(&w->fault, "stress"); /* strain, density, stress */
         mpm_move(w, dt);                     /* position of the points */
+
+        output_progress(o, w, s->steps);
     }
-    *cpu = (double)(clock() - begun - writing) / (double)CLOCKS_PER_SEC;
+    output_progress_end(o);
+    output_cpu(o);
     return 1;
 }
 
 /* Everything that is written at the end. */
-static int finish(const taylor *s, const taylor_case *c, const output *o, const option *options, int n, double cpu)
+static int finish(const taylor *s, const taylor_case *c, output *o, const option *options, int n)
 {
     taylor_row *row = (taylor_row *)malloc((size_t)taylor_rows(s) * sizeof *row);
     taylor_result r;
-    char path[1024];
     int ok = row && taylor_measure(s, c, row, &r);
     if (!ok) complain("no memory for the profile");
-    ok = ok && write_summary(s, &r, o, options, n, cpu) && write_profile(s, row, o);
-    if (ok && o->frames > 0) ok = write_picture(s, c, file_in(o->folder, "taylor.png", path, sizeof path));
+    ok = ok && write_summary(s, &r, o, options, n) && write_profile(s, row, o);
+    if (ok && o->frames > 0) ok = write_picture(s, c, o);
     if (ok && !o->quiet) {
-        print_table(s, c, &r, cpu);
+        print_table(s, c, &r, o->cpu);
         printf("\n  %s/summary.json, profile.csv%s\n", o->folder, o->frames > 0 ? ", taylor.png, taylor.pvd" : "");
     }
     free(row);
@@ -215,8 +155,8 @@ static int finish(const taylor *s, const taylor_case *c, const output *o, const 
 int main(int argc, char **argv)
 {
     taylor_case c = taylor_case_default();
-    output o = {"taylor-out", 9, 0};
-    const option options[] = {
+    output o = output_of("taylor-out", "taylor", "mm", "us", 1e-3);
+    option options[20] = {
         {"length", OPTION_REAL, &c.length, "mm"},
         {"diameter", OPTION_REAL, &c.diameter, "mm"},
         {"velocity", OPTION_REAL, &c.velocity, "impact velocity, m/s"},
@@ -231,29 +171,19 @@ int main(int argc, char **argv)
         {"spacing", OPTION_REAL, &c.spacing, "distance of material points, mm"},
         {"time", OPTION_REAL, &c.time, "simulated time, us"},
         {"dt-factor", OPTION_REAL, &c.dt_factor, "time step over the critical step of the cell"},
-        {"frames", OPTION_LONG, &o.frames, "pictures and ParaView files, evenly in time, both ends included"},
-        {"out", OPTION_TEXT, &o.folder, "output folder"},
-        {"quiet", OPTION_FLAG, &o.quiet, "no table"},
     };
-    const int n = (int)(sizeof options / sizeof options[0]);
+    int n = 0, parsed, ok;
     const char *about = "A metal cylinder hits a rigid wall end on: Taylor's test.\n"
                         "Writes summary.json, profile.csv, taylor.png, taylor.pvd (ParaView) and frames.";
-    char message[300], path[1024];
-    mpm_fault fault;
+    char message[300];
     taylor s;
-    double cpu = 0;
-    int parsed = options_parse(argc, argv, about, options, n), ok;
+    while (options[n].name) n++;
+    output_options(&o, options, &n);
+    parsed = options_parse(argc, argv, about, options, n);
     if (parsed) return parsed < 0 ? 1 : 0;
-    if (!case_wants(o.frames >= 0 && o.frames <= 9999, "frames", (double)o.frames, "must be 0 .. 9999", message,
-                    sizeof message) ||
-        !taylor_begin(&s, &c, message, sizeof message)) {
-        complain(message);
-        return 1;
-    }
-    ok = mpm_io_make_directory(o.folder, &fault) >= 0 || report(&fault, o.folder);
-    if (ok && o.frames > 0)
-        ok = mpm_io_pvd_begin(file_in(o.folder, "taylor.pvd", path, sizeof path), &fault) >= 0 || report(&fault, path);
-    ok = ok && run(&s, &c, &o, &cpu) && finish(&s, &c, &o, options, n, cpu);
+    if (!output_check(&o, message, sizeof message) || !taylor_begin(&s, &c, message, sizeof message))
+        return !complain(message);
+    ok = output_begin(&o) && run(&s, &c, &o) && finish(&s, &c, &o, options, n);
     mpm_free(&s.world);
     return ok ? 0 : 1;
 }

@@ -18,13 +18,13 @@ int main(int argc, char **argv)
     option_add(o, &n, "offset", OPTION_REAL, &offset, "of the second particle along x, um");
     option_add(o, &n, "height", OPTION_REAL, &height, "of its centre over the substrate, um");
     parsed = options_parse(argc, argv, "Two particles, one after the other, on one spot or beside it.\n"
-                           "Writes particles.csv, pairs.csv, summary.json and frames.", o, n);
+                           "Writes particles.csv, pairs.csv, summary.json, particles.pvd (ParaView) and frames;\n"
+                           "run again with the same options after an interruption, it goes on.", o, n);
     if (parsed) return parsed < 0;
-    if (!case_wants(q.frames >= 0 && q.frames < 10000, "frames", (double)q.frames, "must be 0 .. 9999", message,
-                    sizeof message) ||
+    if (!particles_check(&q, message, sizeof message) ||
         !case_wants(fabs(offset) < 1e3, "offset", offset, "must be a length in um", message, sizeof message) ||
         !case_wants(height > 0 && height < 1e4, "height", height, "must be > 0 um", message, sizeof message))
-        return fprintf(stderr, "error: %s\n", message), 1;
+        return !complain(message);
     q.count = 2;
     q.center[0][2] = q.base.diameter / 2;
     q.center[1][0] = offset;

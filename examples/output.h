@@ -1,0 +1,235 @@
+/* output.h - what a run leaves behind while it goes: its points for ParaView, pictures, a progress line.
+   SPDX-License-Identifier: MIT */
+#ifndef OUTPUT_H
+#define OUTPUT_H
+
+#include "case.h"
+#include "mpm.h"
+#include "program.h"
+
+#include <time.h>
+
+/* The output of one run. The first members are set by the program, the others by the routines below. */
+typedef struct output {
+    const char *folder, *name;  /* of the series: name.pvd */
+    const char *length, *time;  /* units; a thousand of the unit of time are one of the world's */
+    double rate;                /* a strain rate of the world, in 1/us */
+    long frames;                /* wanted, evenly in time, both ends included */
+    int quiet;
+
+    long frame;                 /* frames written */
+    double cpu, earlier;        /* seconds without the writing: by output_cpu; when output_start was called */
+    long first;                 /* steps when output_start was called */
+    clock_t begun, shown, writing;
+} output;
+
+static inline output output_of(const char *folder, const char *name, const char *length, const char *time, double rate)
+{
+    output o;
+    memset(&o, 0, sizeof o);
+    o.folder = folder;
+    o.name = name;
+    o.length = length;
+    o.time = time;
+    o.rate = rate;
+    o.frames = 9;
+    return o;
+}
+
+static inline void output_options(output *o, option *options, int *n)
+{
+    option_add(options, n, "frames", OPTION_LONG, &o->frames,
+               "pictures and ParaView files, evenly in time, both ends included");
+    option_add(options, n, "out", OPTION_TEXT, &o->folder, "output folder");
+    option_add(options, n, "quiet", OPTION_FLAG, &o->quiet, "no progress line, no table");
+}
+
+static inline int output_check(const output *o, char *message, size_t n)
+{
+    return case_wants(o->frames >= 0 && o->frames <= 9999, "frames", (double)o->frames, "must be 0 .. 9999", message,
+                      n);
+}
+
+/* Makes the folder and begins the series. Returns 1, or 0 after a message, as all that write. */
+static inline int output_begin(output *o)
+{
+    char name[64], path[MPM_IO_PATH];
+    mpm_fault fault;
+    o->frame = 0;
+    o->cpu = 0;
+    if (mpm_io_make_directory(o->folder, &fault) < 0) return report(&fault, o->folder);
+    if (o->frames == 0) return 1;
+    snprintf(name, sizeof name, "%s.pvd", o->name);
+    return mpm_io_pvd_begin(file_in(o->folder, name, path, sizeof path), &fault) >= 0 || report(&fault, path);
+}
+
+/* Starts the clock, before the first step or where an earlier run was left. */
+static inline void output_start(output *o, const mpm_world *w)
+{
+    o->begun = o->shown = clock();
+    o->writing = 0;
+    o->earlier = o->cpu;
+    o->first = w->steps;
+}
+
+/* CPU seconds of the run, without the writing and with those before output_start. */
+static inline double output_cpu(output *o)
+{
+    o->cpu = o->earlier + (double)(clock() - o->begun - o->writing) / (double)CLOCKS_PER_SEC;
+    return o->cpu;
+}
+
+/* Whether the next frame is due, of a run of that many steps. */
+static inline int output_due(const output *o, const mpm_world *w, long steps)
+{
+    return o->frames > 0 && w->steps * (o->frames > 1 ? o->frames - 1 : 1) >= o->frame * steps;
+}
+
+/* ---- pictures ------------------------------------------------------------------------------ */
+
+/* Two cuts of the whole cross-section. Do not copy: the cuts point to the texts. */
+typedef struct output_picture {
+    mpm_io_cut_desc cut[2];
+    char title[160], time[32];
+} output_picture;
+
+/* Plastic strain, and a second value of the points (NULL: the bodies). Title, window and the range of the
+   second are left to be set. spacing: of the points; with a mirror at y = 0 the cut goes through the first
+   layer of them. */
+static inline void output_cuts(const output *o, const mpm_world *w, double spacing, const mpm_real *second,
+                               output_picture *p)
+{
+    int i;
+    snprintf(p->time, sizeof p->time, "t = %.1f %s", (double)w->time * 1e3, o->time);
+    for (i = 0; i < 2; i++) {
+        p->cut[i] = mpm_io_cut_of(w, i ? second : w->points.plastic_strain);
+        p->cut[i].at = w->desc.geometry == MPM_3D && w->desc.side[2] == MPM_SIDE_SYMMETRY ? spacing / 2 : 0;
+        p->cut[i].mirror = w->desc.side[0] == MPM_SIDE_SYMMETRY;
+        p->cut[i].length_unit = o->length;
+        p->cut[i].time = p->time;
+    }
+    p->cut[0].title = p->title;
+    p->cut[0].label = "effective plastic strain";
+    p->cut[0].low = 0;
+    p->cut[0].high = 4;
+}
+
+static inline void output_window(output_picture *p, double edge, double bottom, double top)
+{
+    int i;
+    for (i = 0; i < 2; i++) {
+        p->cut[i].window[0] = -edge;
+        p->cut[i].window[1] = edge;
+        p->cut[i].window[2] = bottom;
+        p->cut[i].window[3] = top;
+    }
+}
+
+/* The second cut shows temperature from low to high, K. */
+static inline void output_heat(output_picture *p, double low, double high)
+{
+    p->cut[1].label = "temperature (K)";
+    p->cut[1].map = MPM_IO_HEAT;
+    p->cut[1].low = low;
+    p->cut[1].high = high;
+}
+
+static inline int output_png(output *o, const output_picture *p, const char *name)
+{
+    const clock_t mark = clock();
+    char path[MPM_IO_PATH];
+    mpm_fault fault;
+    int ok = mpm_io_cut_png(file_in(o->folder, name, path, sizeof path), p->cut, 2, 2, 800, &fault) >= 0;
+    o->writing += clock() - mark;
+    return ok || report(&fault, path);
+}
+
+/* ---- frames -------------------------------------------------------------------------------- */
+
+#define OUTPUT_FIELDS 11 /* of every run */
+#define OUTPUT_MORE 4    /* room for its own */
+
+/* All that ParaView can show, with `count` fields of the run's own, into folder/name. */
+static inline int output_points(const output *o, const mpm_world *w, const mpm_io_field *more, int count,
+                                const char *name)
+{
+    const mpm_points *p = &w->points;
+    mpm_io_vtu_desc d = mpm_io_vtu_desc_default();
+    mpm_io_field field[OUTPUT_FIELDS + OUTPUT_MORE];
+    mpm_fault fault;
+    char path[MPM_IO_PATH], note[80];
+    int32_t *body = (int32_t *)malloc((size_t)p->count * sizeof *body);
+    int a, ok;
+    if (!body) return complain("no memory for output");
+    mpm_io_body_numbers(w, body);
+    field[0] = mpm_io_vector("velocity (m/s)", p->v[0], p->v[1], p->v[2], 1);
+    field[1] = mpm_io_tensor("stress (MPa)", p->stress[0], p->stress[1], p->stress[2], p->stress[3], p->stress[4],
+                             p->stress[5], 1);
+    field[2] = mpm_io_scalar("density (g/cm3)", p->density, 1e3);
+    field[3] = mpm_io_scalar("temperature (K)", p->temperature, 1);
+    field[4] = mpm_io_scalar("plastic strain", p->plastic_strain, 1);
+    field[5] = mpm_io_scalar("plastic strain rate (1/us)", p->plastic_rate, o->rate);
+    field[6] = mpm_io_scalar("plastic energy density (MPa)", p->plastic_work, 1);
+    field[7] = mpm_io_scalar("bond D", p->bond, 1);
+    field[8] = mpm_io_int32("body", body);
+    field[9] = mpm_io_int32("id", p->id);
+    field[10] = mpm_io_uint8("surface", p->flags);
+    for (a = 0; a < count && a < OUTPUT_MORE; a++) field[OUTPUT_FIELDS + a] = more[a];
+    snprintf(note, sizeof note, "%s: lengths %s, time %s", o->name, o->length, o->time);
+    d.count = (size_t)p->count;
+    for (a = 0; a < 3; a++) d.x[a] = p->x[a];
+    d.fields = field;
+    d.field_count = OUTPUT_FIELDS + (count < OUTPUT_MORE ? count : OUTPUT_MORE);
+    d.time = (double)w->time * 1e3;
+    d.float32 = 1;
+    d.note = note;
+    ok = mpm_io_vtu(file_in(o->folder, name, path, sizeof path), &d, &fault) >= 0;
+    free(body);
+    return ok || report(&fault, path);
+}
+
+/* The next frame: points_NNNN.vtu, its entry in the series, and frame_NNNN.png. */
+static inline int output_frame(output *o, const mpm_world *w, const mpm_io_field *more, int count,
+                               const output_picture *p)
+{
+    const clock_t mark = clock();
+    char series[64], name[64], path[MPM_IO_PATH];
+    mpm_fault fault;
+    snprintf(series, sizeof series, "%s.pvd", o->name);
+    snprintf(name, sizeof name, "points_%04ld.vtu", o->frame);
+    if (!output_points(o, w, more, count, name)) return 0;
+    if (mpm_io_pvd_add(file_in(o->folder, series, path, sizeof path), name, (double)w->time * 1e3, &fault) < 0)
+        return report(&fault, path);
+    o->writing += clock() - mark;
+    snprintf(name, sizeof name, "frame_%04ld.png", o->frame++);
+    return output_png(o, p, name);
+}
+
+/* ---- progress ------------------------------------------------------------------------------ */
+
+/* The progress line, about twice a second of CPU time. */
+static inline void output_progress(output *o, const mpm_world *w, long steps)
+{
+    mpm_io_progress p;
+    char line[160];
+    if (o->quiet || (double)(clock() - o->shown) < 0.5 * (double)CLOCKS_PER_SEC) return;
+    o->shown = clock();
+    memset(&p, 0, sizeof p);
+    p.step = w->steps;
+    p.first_step = o->first;
+    p.steps = steps;
+    p.time = (double)w->time * 1e3;
+    p.time_unit = o->time;
+    p.points = (double)w->points.count;
+    p.elapsed = (double)(clock() - o->begun) / (double)CLOCKS_PER_SEC;
+    mpm_io_progress_text(line, sizeof line, &p);
+    fprintf(stderr, "\r%-90s", line);
+    fflush(stderr);
+}
+
+static inline void output_progress_end(const output *o)
+{
+    if (!o->quiet) fprintf(stderr, "\r%-90s\r", "");
+}
+
+#endif

@@ -40,7 +40,7 @@ static int check(const pull_case *c, char *m, size_t n)
            case_wants(c->distance > 0 && c->distance < 1e6, "distance", c->distance, "must be > 0 um", m, n) &&
            case_wants((c->distance / c->velocity * 1e3 + c->ramp) / c->sample < 1e6, "sample", c->sample,
                       "too many of them", m, n) &&
-           case_wants(c->grip > 0 && c->grip < 1e6, "grip", c->grip, "must be > 0 um", m, n);
+           case_wants(c->grip > 0 && c->grip < 1e6, "grip", c->grip, "must be in (0, 1e6) um", m, n);
 }
 
 /* The pull that follows the impact s, whose bodies meet at `met`. */
@@ -185,14 +185,15 @@ static int run(impact *s, const impact_case *ic, const pull_case *o, curve *c, c
     mpm_io_csv table;
     mpm_fault fault;
     mpm_pull p;
-    char path[1024];
+    char path[1024], grip[80];
     int drawn;
     while (s->world.steps < s->steps)
         if (impact_step(s) < 0) return report(&s->world.fault, "impact");
     r = impact_measure(s, ic);
     met = mpm_bond_interface(&s->world, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
     memset(&p, 0, sizeof p);
-    if (met.area > 0 && describe(&p, s, ic, o, &met, &fault) != MPM_OK) return report(&fault, "--grip");
+    snprintf(grip, sizeof grip, "--grip %g, which leaves nothing to draw at", o->grip);
+    if (met.area > 0 && describe(&p, s, ic, o, &met, &fault) != MPM_OK) return report(&fault, grip);
     if (mpm_io_csv_begin(&table, file_in(o->folder, "pull.csv", path, sizeof path),
                          "time_ns,way_um,force_uN,grip_force_uN,stress_MPa,nodes_met,nodes_bonded,nodes_held",
                          "pull: forces of the whole particle", &fault) < 0)

@@ -223,6 +223,7 @@ static void example(void)
     CHECK_TRUE("no sample", pull("--time 1 --sample 0") != 0);
     CHECK_TRUE("more samples than there is room for", pull("--time 1 --ramp 1e8") != 0);
     CHECK_TRUE("a grip over the whole pile", pull("--time 1 --grip 100") != 0);
+    CHECK_TRUE("... is named as given", strstr(text_of("build/tests/pull.out"), "--grip 100,") != NULL);
 }
 
 int main(void)

@@ -1,0 +1,244 @@
+/* 63_particles - scenes of several particles: their files; one that was interrupted ends with the same bits as one
+   that was not, and a finished one is known by its options and places. SPDX-License-Identifier: MIT */
+#define MPM_IMPLEMENTATION
+#include "particles_case.h"
+#include "check.h"
+#include "files.h"
+
+#define FOLDER "build/tests/particles"
+
+/* Two particles on a grid so coarse that the scene takes a second; three frames. */
+static void scene(particles_case *q, const char *folder)
+{
+    *q = particles_default("half", folder);
+    q->base.cell = 2;
+    q->base.spacing = 1;
+    q->base.substrate_diameter = 24;
+    q->base.substrate_height = 6;
+    q->base.margin = 0.5;
+    q->base.time = 8;
+    q->count = 2;
+    q->center[0][2] = 7;
+    q->center[1][0] = 3.1;
+    q->center[1][2] = 22;
+    q->out.frames = 3;
+    q->out.quiet = 1;
+}
+
+/* Runs it, at most so many steps (0: all). */
+static int run(particles_case *q, long steps)
+{
+    option o[IMPACT_OPTIONS];
+    const int n = particles_options(q, o);
+    q->stop_after = steps;
+    return particles_main(q, o, n);
+}
+
+/* Bytes of folder/name, in memory that the next but one call gives back; NULL if there is no file. */
+static unsigned char *bytes_of(const char *folder, const char *name, size_t *n)
+{
+    static unsigned char *kept[2];
+    static int turn;
+    char path[MPM_IO_PATH];
+    FILE *f = fopen(file_in(folder, name, path, sizeof path), "rb");
+    *n = 0;
+    if (!f) return NULL;
+    turn = !turn;
+    fseek(f, 0, SEEK_END);
+    *n = (size_t)ftell(f);
+    rewind(f);
+    free(kept[turn]);
+    kept[turn] = (unsigned char *)malloc(*n + 1);
+    if (fread(kept[turn], 1, *n, f) != *n) *n = 0;
+    kept[turn][*n] = 0;
+    fclose(f);
+    return kept[turn];
+}
+
+static int exists(const char *folder, const char *name)
+{
+    size_t n;
+    return bytes_of(folder, name, &n) != NULL;
+}
+
+/* Whether two folders hold the same file; of a summary as far as it does not tell of this very run. */
+static int same(const char *a, const char *b, const char *name)
+{
+    size_t na, nb;
+    unsigned char *x = bytes_of(a, name, &na), *y = bytes_of(b, name, &nb);
+    const char *end = x ? strstr((char *)x, "\"cpu_seconds\"") : NULL;
+    if (!x || !y || na < 40) return 0;
+    if (end) na = nb = (size_t)(end - (char *)x);
+    return na == nb && !memcmp(x, y, na);
+}
+
+/* Stopped, left for dead behind its second frame, gone on with from the first stop, beside one run. */
+static void interrupted(const char *normal, int separation)
+{
+    static const char *const file[] = {"particles.csv", "pairs.csv", "summary.json", "particles.pvd",
+                                       "points_0000.vtu", "points_0001.vtu", "points_0002.vtu", "frame_0002.png"};
+    static particles_case whole, parts;
+    int k;
+    scene(&whole, FOLDER "/whole");
+    scene(&parts, FOLDER "/parts");
+    whole.base.normal = parts.base.normal = normal;
+    whole.base.separation = parts.base.separation = separation;
+    CHECK_EQUAL(normal, run(&whole, 0), 0);
+    CHECK_EQUAL("stopped after 100 steps", run(&parts, 100), 3);
+    CHECK_TRUE("... with a checkpoint, without a summary",
+               exists(FOLDER "/parts", "checkpoint.bin") && !exists(FOLDER "/parts", "summary.json"));
+    CHECK_TRUE("... which is not taken for a finished scene", !particles_finished(&parts));
+    scene(&parts, FOLDER "/parts");
+    parts.base.normal = normal;
+    parts.base.separation = separation;
+    system("cp " FOLDER "/parts/checkpoint.bin " FOLDER "/first.bin");
+    CHECK_EQUAL("stopped again, behind the second frame", run(&parts, 200), 3);
+    CHECK_TRUE("... which is there", exists(FOLDER "/parts", "points_0001.vtu"));
+    system("cp " FOLDER "/first.bin " FOLDER "/parts/checkpoint.bin");
+    CHECK_EQUAL("to the end", run(&parts, 0), 0);
+    CHECK_TRUE("... at which the checkpoint goes", !exists(FOLDER "/parts", "checkpoint.bin"));
+    for (k = 0; k < 8; k++) {
+        char line[80];
+        snprintf(line, sizeof line, "the same bits: %s", file[k]);
+        CHECK_TRUE(line, same(FOLDER "/whole", FOLDER "/parts", file[k]));
+    }
+}
+
+/* What a person does: other options, or a damaged file, begin afresh. */
+static void afresh(void)
+{
+    static const struct {
+        const char *options;
+        const char *said, *stopped;
+    } turn[] = {{"--velocity 800", "", "stopped at step 5 "},
+                {"--velocity 800", "going on from step 5 of", "stopped at step 10 "},
+                {"--velocity 801", "starting afresh", "stopped at step 5 "},
+                {"--velocity 801 --offset 0.5", "starting afresh", "stopped at step 5 "},
+                {"--velocity 801 --offset 0.5 --frames 0", "starting afresh", "stopped at step 5 "},
+                {"--velocity 801 --offset 0.5 --frames 0", "going on from step 5 of", "stopped at step 10 "}};
+    char command[400];
+    FILE *f;
+    int k;
+    for (k = 0; k < 7; k++) {
+        const int again = k < 6 ? k : 5; /* once more, with a damaged file */
+        if (k == 6) {
+            f = fopen(FOLDER "/turns/checkpoint.bin", "ab");
+            if (f) fputc('x', f);
+            if (f) fclose(f);
+        }
+        snprintf(command, sizeof command,
+                 "build/two_particles --cell 2 --spacing 1 --substrate-diameter 24 --substrate-height 6 --frames 1 "
+                 "--stop-after 5 --out " FOLDER "/turns %s >" FOLDER "/out 2>&1", turn[again].options);
+        CHECK_TRUE(turn[again].options, system(command) != 0);
+        CHECK_TRUE("... says so", strstr(text_of(FOLDER "/out"), k < 6 ? turn[k].said : "starting afresh") != NULL);
+        CHECK_TRUE("... and where", strstr(text_of(FOLDER "/out"), k < 6 ? turn[k].stopped : "at step 5 ") != NULL);
+    }
+}
+
+/* Takes the lines that name an option out of a summary, as if it were older than the option. */
+static void forget(const char *folder, const char *option_name)
+{
+    size_t n;
+    char *text = (char *)bytes_of(folder, "summary.json", &n), path[MPM_IO_PATH], *at, *end;
+    FILE *f;
+    at = text ? strstr(text, option_name) : NULL;
+    CHECK_TRUE(option_name, at != NULL);
+    if (!at) return;
+    while (*at != '\n') at--;
+    end = strchr(at + 1, '\n');
+    f = fopen(file_in(folder, "summary.json", path, sizeof path), "wb");
+    if (!f) return;
+    fwrite(text, 1, (size_t)(at - text), f);
+    fputs(end, f);
+    fclose(f);
+}
+
+/* Of the scene in FOLDER/whole. */
+static void finished(void)
+{
+    static particles_case q;
+    scene(&q, FOLDER "/whole");
+    q.base.normal = "logistic";
+    q.base.separation = 1;
+    CHECK_TRUE("a finished scene is known", particles_finished(&q));
+    q.out.frames = 9;
+    q.out.quiet = 0;
+    CHECK_TRUE("... whatever else it wrote", particles_finished(&q));
+    q.base.gc += 1e-6;
+    CHECK_TRUE("... not with another number", !particles_finished(&q));
+    q.base.gc = impact_case_default().gc;
+    q.base.normal = "log";
+    CHECK_TRUE("... another word", !particles_finished(&q));
+    q.base.normal = "logistic";
+    q.base.separation = 0;
+    CHECK_TRUE("... another switch", !particles_finished(&q));
+    q.base.separation = 1;
+    q.center[1][0] = 3.2;
+    CHECK_TRUE("... another place", !particles_finished(&q));
+    q.center[1][0] = 3.1;
+    q.count = 1;
+    CHECK_TRUE("... another number of particles", !particles_finished(&q));
+    q.count = 2;
+    q.out.folder = FOLDER "/none";
+    CHECK_TRUE("... another folder", !particles_finished(&q));
+    q.out.folder = FOLDER "/whole";
+    CHECK_TRUE("known again", particles_finished(&q));
+    forget(FOLDER "/whole", "\"bond-width\"");
+    CHECK_TRUE("an option it does not have has its default", particles_finished(&q));
+    q.base.bond_width = 0.5;
+    CHECK_TRUE("... and no other value", !particles_finished(&q));
+    q.base.bond_width = 0;
+    forget(FOLDER "/whole", "\"normal\"");
+    CHECK_TRUE("... for a word too", !particles_finished(&q));
+}
+
+/* The last field of the last frame: the points that name a partner are those in pairs.csv. */
+static void partners(void)
+{
+    const double points = number_in(FOLDER "/whole/summary.json", "points");
+    long found[4] = {0, 0, 0, 0}, counted = 0, k;
+    int32_t value;
+    size_t n;
+    unsigned char *file = bytes_of(FOLDER "/whole", "points_0002.vtu", &n), *end = NULL, *at;
+    const char *row = text_of(FOLDER "/whole/pairs.csv");
+    CHECK_TRUE("the field is there", file && strstr((char *)file, "Name=\"bonded to\"") && points > 0);
+    for (at = file; file && at < file + n; at++)
+        if (*at == '\n' && (size_t)(file + n - at) > 20 && !memcmp(at + 1, "  </AppendedData>", 17)) end = at;
+    CHECK_TRUE("... to its end", end != NULL);
+    if (!end) return;
+    for (k = 1; k <= (long)points; k++) {
+        memcpy(&value, end - 4 * k, 4);
+        if (value >= -1 && value <= 2) found[value + 1]++;
+    }
+    for (row = strstr(row, "held_nodes\n"); row && (row = strchr(row, '\n')) != NULL && row[1]; row++) {
+        long contacted = 0;
+        if (sscanf(row, "\n%*d,%*d,%*f,%ld", &contacted) == 1) counted += contacted;
+    }
+    CHECK_EQUAL("every point has a body or none", found[0] + found[1] + found[2] + found[3], points);
+    CHECK_EQUAL("those with a body are the contacted ones", found[1] + found[2] + found[3], counted);
+    CHECK_TRUE("... of all three bodies", found[1] > 0 && found[2] > 0 && found[3] > 0);
+}
+
+static void refused(const char *command, const char *said)
+{
+    char line[300];
+    snprintf(line, sizeof line, "build/%s --out " FOLDER "/bad >" FOLDER "/out 2>&1", command);
+    CHECK_TRUE(command, system(line) != 0);
+    CHECK_TRUE("... with a message naming it", strstr(text_of(FOLDER "/out"), said) != NULL);
+}
+
+int main(void)
+{
+    CHECK_EQUAL("an empty folder", system("rm -rf " FOLDER " && mkdir -p " FOLDER), 0);
+    interrupted("ranked", 0);
+    partners();
+    interrupted("logistic", 1);
+    finished();
+    afresh();
+    refused("many_particles --cell 1e9", "--cell 1000000000");
+    refused("many_particles --cell 100 --spread 20", "smaller --cell");
+    refused("many_particles --time -1", "--time -1");
+    refused("two_particles --stop-after -2", "--stop-after -2");
+    refused("two_particles --frames 10000", "--frames 10000");
+    return check_end();
+}

@@ -374,7 +374,7 @@ static int keep_picture(work *w, const particles_case *q, const char *folder, co
     size_t n;
     FILE *in, *out;
     int ok;
-    snprintf(from, sizeof from, "%s/frame_%04ld.png", folder, q->frames - 1);
+    snprintf(from, sizeof from, "%s/frame_%04ld.png", folder, q->out.frames - 1);
     in = fopen(from, "rb");
     out = fopen(data_file(w, name, to, sizeof to), "wb");
     while (in && out && (n = fread(part, 1, sizeof part, in)) > 0) fwrite(part, 1, n, out);

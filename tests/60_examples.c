@@ -6,7 +6,6 @@
 #include "check.h"
 #include "files.h"
 
-
 static int run(const char *options)
 {
     char command[500];
@@ -81,6 +80,25 @@ static void metals(void)
     CHECK_TRUE("the strain bond grows", number_in(al, "abp") > 0);
 }
 
+/* Frames: points for ParaView with all fields, their series, pictures. */
+static void frames(void)
+{
+    static const char *const field[] = {"velocity (m/s)", "stress (MPa)", "density (g/cm3)", "temperature (K)",
+                                        "plastic strain", "plastic strain rate (1/us)",
+                                        "plastic energy density (MPa)", "bond D", "body", "id", "surface"};
+    char line[80];
+    int k;
+    CHECK_EQUAL("two frames", run("--time 1 --spacing 0.75 --frames 2 --out build/tests/frames"), 0);
+    CHECK_TRUE("the series names both", strstr(text_of("build/tests/frames/impact.pvd"), "\"points_0000.vtu\"") &&
+                                            strstr(text_of("build/tests/frames/impact.pvd"), "\"points_0001.vtu\""));
+    for (k = 0; k < 11; k++) {
+        snprintf(line, sizeof line, "Name=\"%s\"", field[k]);
+        CHECK_TRUE(line, strstr(text_of("build/tests/frames/points_0001.vtu"), line) != NULL);
+    }
+    CHECK_TRUE("pictures", !strncmp(text_of("build/tests/frames/frame_0001.png") + 1, "PNG", 3) &&
+                               !strncmp(text_of("build/tests/frames/impact.png") + 1, "PNG", 3));
+}
+
 /* The scene without a program: volumes, areas, and a step that is the example's loop. */
 static void scene(void)
 {
@@ -135,6 +153,7 @@ int main(void)
     CHECK_EQUAL("a short impact, rings", run("--time 2 --geometry axisymmetric --out build/tests/rings"), 0);
     CHECK_NEAR("... momentum error along the axis", number_in("build/tests/rings/summary.json", "momentum_error"), 0, 1e-12);
     CHECK_NEAR("energy unaccounted", number_in(q, "energy_unaccounted"), 0, 0.03);
+    frames();
     oblique();
     metals();
     scene();
@@ -159,6 +178,7 @@ int main(void)
     refused("--bond glue", "glue");
     refused("--shell 0", "--shell 0");
     refused("--nonsense 1", "--nonsense");
+    refused("--frames 10000", "--frames 10000");
     CHECK_TRUE("unwritable folder", run("--time 1 --out /proc/none") != 0);
     return check_end();
 }

@@ -43,6 +43,8 @@ static void program(void)
     CHECK_EQUAL("a short run", run("--time 5 --cell 0.8 --spacing 0.4 --frames 1 --out build/tests/taylor"), 0);
     CHECK_EQUAL("in three dimensions",
                 run("--time 5 --cell 0.8 --spacing 0.4 --frames 0 --geometry 3d --out build/tests/taylor-3d"), 0);
+    CHECK_TRUE("a frame with the places at the start", strstr(text_of("build/tests/taylor/points_0000.vtu"),
+                                                              "Name=\"height at the start (mm)\"") != NULL);
     CHECK_EQUAL("points, 8 by 81", number_in(a, "points"), 8 * 81);
     CHECK_EQUAL("rows of the profile, a note and a header", lines_in("build/tests/taylor/profile.csv"), 81 + 2 + 2);
     CHECK_NEAR("mass error", number_in(a, "mass_error"), 0, 0);

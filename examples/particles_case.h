@@ -362,8 +362,10 @@ static inline int particles_finished(const particles_case *q)
     for (k = 0; k < q->count; k++) {
         row = row ? strchr(row, '\n') : NULL;
         if (!row || strtol(row + 1, &row, 10) != k) return 0;
-        for (a = 0; a < 3; a++)
-            if (*row != ',' || fabs((double)((mpm_real)strtod(row + 1, &row) - (mpm_real)q->center[k][a])) > 0) return 0;
+        for (a = 0; a < 3; a++) {
+            const mpm_real centre = (mpm_real)q->center[k][a];
+            if (*row != ',' || fabs((double)((mpm_real)strtod(row + 1, &row) - centre)) > 0) return 0;
+        }
     }
     return 1;
 }

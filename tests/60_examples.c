@@ -151,7 +151,8 @@ int main(void)
                    number_in(q, "energy_contact_fraction") + number_in(q, "energy_bond_fraction"),
                1 + number_in(q, "energy_unaccounted"), 1e-9);
     CHECK_EQUAL("a short impact, rings", run("--time 2 --geometry axisymmetric --out build/tests/rings"), 0);
-    CHECK_NEAR("... momentum error along the axis", number_in("build/tests/rings/summary.json", "momentum_error"), 0, 1e-12);
+    CHECK_NEAR("... momentum error along the axis", number_in("build/tests/rings/summary.json", "momentum_error"), 0,
+               1e-12);
     CHECK_NEAR("energy unaccounted", number_in(q, "energy_unaccounted"), 0, 0.03);
     frames();
     oblique();

@@ -144,7 +144,7 @@ static inline void calibration_refine(const calibration *q, calibration_map *m, 
     if (i1 - i0 > 1 && j1 - j0 > 1) calibration_refine(q, m, im, i1, jm, j1);
 }
 
-/* Reads what is finished and decides what is wanted: everything, or a net of 5 x 5 nodes and from there
+/* Reads what is finished and decides what is wanted: everything, or a net of 5 x 3 nodes and from there
    wherever the class changes. Returns how many wanted nodes have not been run. */
 static inline long calibration_look(const calibration *q, const study *s, int size, calibration_map *m)
 {
@@ -156,10 +156,10 @@ static inline long calibration_look(const calibration *q, const study *s, int si
         m->bonds[k] = (signed char)(study_find(s, &c, value) ? calibration_bonds(q, size, value) : -1);
         m->wanted[k] = (signed char)(q->plain != 0);
     }
-    for (j = 0; j < 4 && !q->plain; j++)
+    for (j = 0; j < 2 && !q->plain; j++)
         for (k = 0; k < 4; k++)
-            calibration_refine(q, m, k * (q->columns - 1) / 4, (k + 1) * (q->columns - 1) / 4, j * (q->rows - 1) / 4,
-                               (j + 1) * (q->rows - 1) / 4);
+            calibration_refine(q, m, k * (q->columns - 1) / 4, (k + 1) * (q->columns - 1) / 4, j * (q->rows - 1) / 2,
+                               (j + 1) * (q->rows - 1) / 2);
     for (k = 0; k < all; k++) missing += m->wanted[k] && m->bonds[k] < 0;
     return missing;
 }

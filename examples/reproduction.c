@@ -231,7 +231,7 @@ static int calibrations(work *w)
             q.base.spacing = grids[g].spacing;
             q.rule = rules[r];
             q.columns = 5;
-            q.rows = 33;
+            q.rows = 17;
             calibration_tolerances(q.base.cell, q.base.spacing, q.pbcp, q.restitution);
             if ((status = calibration_run(&q, &w->s, w->message, sizeof w->message)) <= 0) return status;
             calibration_collect(&q, &w->s, &result);

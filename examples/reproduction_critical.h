@@ -117,7 +117,7 @@ static inline int critical_row(work *w, mpm_io_csv *t, const critical_setting *g
     if (!strcmp(g->geometry, "3d") && w->budget == DESK) { /* a spot check: halving alone */
         range.low = 600;
         range.scan = 400;
-        range.step = 12.5;
+        range.step = 25;
     }
     w->s.planned = w->s.done + g->times[size] * critical_cost(&range);
     status = critical_repeat(w, c, VARY_GRID, rule_name, range, g->times[size], out);
@@ -284,10 +284,8 @@ static inline int scatter(work *w)
                {"grid kept, time step varied", VARY_STEP, "linear", "ranked", "mean", "thesis", 0, 0, 0},
                {"GIMP", VARY_GRID, "gimp", "ranked", "mean", "thesis", 0, 0, 0},
                {"logistic normals", VARY_GRID, "linear", "logistic", "mean", "thesis", 0, 0, 0},
-               {"averaged normals", VARY_GRID, "linear", "average", "mean", "thesis", 0, 0, 0},
                {"nodal D weighted with N", VARY_GRID, "linear", "ranked", "weighted", "thesis", 0, 0, 0},
                {"held in parts, D 0.5 to 1.5", VARY_GRID, "linear", "ranked", "mean", "thesis", 0, 1, 0},
-               {"GIMP, logistic normals", VARY_GRID, "gimp", "logistic", "mean", "thesis", 0, 0, 0},
                {"GIMP, logistic, weighted, in parts", VARY_GRID, "gimp", "logistic", "weighted", "thesis", 0, 1, 0},
                {"contact where points touch", VARY_GRID, "linear", "ranked", "mean", "thesis", 1, 0, 0},
                {"GIMP, logistic, where points touch", VARY_GRID, "gimp", "logistic", "mean", "thesis", 1, 0, 0},

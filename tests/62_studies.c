@@ -115,7 +115,7 @@ static void calibration(void)
     snprintf(command, sizeof command, "%s --list", sweep);
     CHECK_EQUAL("a sweep lists its first tasks", run(command), 0);
     tasks = lines(output);
-    CHECK_EQUAL("... 25 of each size", tasks, 50);
+    CHECK_EQUAL("... 15 of each size", tasks, 30);
     snprintf(command, sizeof command, "%s --collect", sweep);
     CHECK_EQUAL("nothing to collect yet", run(command), 1);
     snprintf(command, sizeof command, "%s --task 0", sweep);

@@ -77,6 +77,7 @@
 #define mpm_io_csv_text mpm_io_csv_text_f32
 #define mpm_io_csv_row mpm_io_csv_row_f32
 #define mpm_io_csv_end mpm_io_csv_end_f32
+#define mpm_io_csv_drop mpm_io_csv_drop_f32
 #define mpm_io_scalar mpm_io_scalar_f32
 #define mpm_io_vector mpm_io_vector_f32
 #define mpm_io_tensor mpm_io_tensor_f32
@@ -219,6 +220,9 @@ MPM_API void mpm_io_csv_row(mpm_io_csv *t, const mpm_real *values);
 /* Gives the file its name. MPM_ERR_FILE when a write failed, MPM_ERR_ARGUMENT when the last row is
    not full: then there is no file. */
 MPM_API mpm_status mpm_io_csv_end(mpm_io_csv *t, mpm_fault *fault);
+/* Instead of end: gives the table up, even in the middle of a row or after an error. What is written so
+   far is removed; a file that had the name before stays as it was. Test: 40_io.c "dropped". */
+MPM_API void mpm_io_csv_drop(mpm_io_csv *t);
 
 /* ---- ParaView ------------------------------------------------------------------------------ */
 
@@ -892,6 +896,8 @@ MPM_API mpm_status mpm_io_csv_end(mpm_io_csv *t, mpm_fault *fault)
     }
     return mpm__io_close(&t->file, 1, fault);
 }
+
+MPM_API void mpm_io_csv_drop(mpm_io_csv *t) { mpm__io_close(&t->file, 0, NULL); }
 
 /* ---- ParaView ------------------------------------------------------------------------------ */
 

@@ -379,6 +379,15 @@ static void test_failures(void)
     equal("half a row", mpm_io_csv_end(&t, &f), MPM_ERR_ARGUMENT);
     holds("untouched after failing", file_is(FOLDER "/keep.csv", "precious"));
     holds("no .part stays", !exists(FOLDER "/keep.csv.part"));
+    mpm_io_csv_begin(&t, FOLDER "/keep.csv", "a,b", NULL, NULL);
+    mpm_io_csv_integer(&t, 1);
+    holds("a table being written", exists(FOLDER "/keep.csv.part"));
+    mpm_io_csv_drop(&t);
+    holds("dropped: untouched", file_is(FOLDER "/keep.csv", "precious"));
+    holds("dropped: no .part stays", !exists(FOLDER "/keep.csv.part"));
+    mpm_io_csv_begin(&t, nowhere, "a", NULL, NULL);
+    mpm_io_csv_drop(&t); /* one that could not be begun */
+    holds("dropped: nothing is left", !exists(nowhere));
 #ifdef __linux__
     if (system("ln -sf /dev/full " FOLDER "/keep.csv.part") == 0) { /* a disc without room */
         mpm_io_csv_begin(&t, FOLDER "/keep.csv", "a", NULL, NULL);

@@ -283,8 +283,9 @@ typedef struct mpm_desc {
     mpm_real contact_cutoff; /* a node has contact where both bodies weigh more than this share of a point
                                 there. Below it a point that barely reaches the node would push with its
                                 whole stress, which MUSL never lets it relieve. */
-    mpm_real bond_width;     /* 0: a pair is held from D = 1 on (A 4.7); > 0: in parts, of its separating
-                                momentum none at D = 1 - width/2, all at 1 + width/2, linear between; <= 2 */
+    mpm_real bond_width;     /* 0: a pair is held from D = 1 on (A 4.7). > 0, up to 2: a softened threshold; each
+                                step takes a share of the separating momentum, none at D = 1 - width/2, all at
+                                1 + width/2. The load has no limit: within 1/share steps the pair carries it */
     mpm_real gravity[3];     /* [length/time^2] */
     mpm_real mass_cutoff;    /* nodes lighter than this share of a mean point's mass are passed over:
                                 beyond it lie numbers too small to divide by (GIMP's outermost nodes) */
@@ -514,8 +515,8 @@ MPM_API void mpm_grid_update(mpm_world *w, mpm_real dt);
 /* Lists the pairs of bodies that meet at nodes, with their normals (A 3.30). */
 MPM_API void mpm_contact_find(mpm_world *w);
 
-/* Contact forces on the pairs (A 3.29, 3.31); where pair.bond >= 1 separating pairs are held (A 4.7; in
-   parts with desc.bond_width). Test: 30_bond. */
+/* Contact forces on the pairs (A 3.29, 3.31); where pair.bond >= 1 separating pairs are held (A 4.7; see
+   desc.bond_width). Test: 30_bond. */
 MPM_API void mpm_contact_apply(mpm_world *w, mpm_real dt);
 
 /* Velocity of the points from nodal accelerations (A 3.32, first half). */

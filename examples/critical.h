@@ -6,8 +6,8 @@
 #include "study.h"
 
 /* When a run counts as bonded. "thesis": PBCP at least `pbcp` and the rebound velocity of the points up
-   to 60 m/s at most `v_rest` (source A 5.2.1: 5 % and 0.6 m/s; at 14 um 4.8 % and 0.9 m/s). "stays": the
-   particle's mean velocity, averaged over the last eighth of the run, is below `stays` in size and the
+   to 60 m/s at most `v_rest` (source A, section 5.2.2: 5 % and 0.6 m/s; up to 14 um 4.8 % and 0.9 m/s).
+   "stays": the particle's mean velocity, averaged over the last eighth of the run, is below `stays` in size and the
    bond was at work in that time: what a camera would see, without a tolerance on PBCP. Velocities are
    relative to the substrate's mean, since large particles drift with it. */
 typedef struct critical_rule {
@@ -59,7 +59,7 @@ typedef struct critical_answer {
     double offset;
     double velocity;     /* the lowest tested velocity that bonds; infinite: none did */
     double below;        /* the highest tested one under it, which does not; 0: the range begins bonded */
-    double pbcp, v_rest; /* at `velocity` */
+    double pbcp, v_rest; /* at `velocity`; NaN without one */
     int lost;            /* tested velocities above that do not bond: the threshold is not sharp */
 } critical_answer;
 
@@ -109,6 +109,7 @@ static inline critical_answer critical_read(const critical_curve *curve, int fir
     memset(&a, 0, sizeof a);
     a.offset = offset;
     a.velocity = HUGE_VAL;
+    a.pbcp = a.v_rest = NAN;
     for (k = first; k < curve->runs; k++) {
         const critical_run *r = &curve->run[k];
         if (!r->bonds || r->velocity >= a.velocity) continue;
@@ -151,8 +152,9 @@ typedef struct critical_spread {
 
 static inline int critical_order(const void *a, const void *b)
 {
-    const double x = ((const critical_answer *)a)->velocity, y = ((const critical_answer *)b)->velocity;
-    return (x > y) - (x < y);
+    const critical_answer *x = (const critical_answer *)a, *y = (const critical_answer *)b;
+    if (x->velocity < y->velocity || x->velocity > y->velocity) return x->velocity > y->velocity ? 1 : -1;
+    return (x->offset > y->offset) - (x->offset < y->offset);
 }
 
 /* Sorts the answers. */

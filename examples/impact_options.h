@@ -42,7 +42,7 @@ static inline int impact_options(impact_case *c, option *o)
     option_add(o, &n, "floor", OPTION_REAL, &c->floor, "least value of the rate factor of the bond threshold");
     option_add(o, &n, "bond-length", OPTION_REAL, &c->bond_length, "energy bond: regularising length, um; 0: the cell");
     option_add(o, &n, "bond-width", OPTION_REAL, &c->bond_width,
-               "D of a node from free to held, around 1; 0: all at once");
+               "softens the threshold D = 1 of a node over this range; 0: sharp");
     option_add(o, &n, "symmetry", OPTION_TEXT, &c->symmetry, "full|half (mirror y = 0)|quarter");
     option_add(o, &n, "geometry", OPTION_TEXT, &c->geometry, "3d|axisymmetric");
     option_add(o, &n, "functions", OPTION_TEXT, &c->functions, "shape functions: linear|gimp");

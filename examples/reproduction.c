@@ -1,8 +1,9 @@
 /* reproduction - the results of source A's chapters 4 and 5 again, beside its numbers.
 
-   Runs the cases A-conv, A-cal, A-dt, A-jet, A-crit, A-two, A-ten and A-site at a stated budget: "quick" on the
-   coarsest grid (about half an hour of one core), "desk" at 1.0/0.25 um in axisymmetry (hours), "full" source A's
-   grids throughout (days). Writes tables and plots into --data and replaces its part of --page.
+   Runs the cases A-conv, A-dt, A-jet, A-crit, A-cal, A-site, A-two and A-ten, and what explains them, at a stated
+   budget: "quick" on the coarsest grid (half an hour of one core), "desk" at 1.0/0.25 um in axisymmetry with
+   checks at 0.7/0.175 um in 3D (some six hours), "full" with every row of the tables (days). Writes tables and
+   plots into --data and replaces its part of --page.
    Every finished run is kept in --out and never repeated; delete the folder after changing the headers.
    SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
@@ -68,7 +69,7 @@ static int convergence(work *w)
            "staged: strain | energy density, MPa | points |\n|---|---|---|---|---|---|\n");
     for (k = 0; k < count && status > 0; k++) status = convergence_row(w, &t, grids[k], low, high, &cpu);
     if (status <= 0) {
-        mpm_io_csv_end(&t, NULL);
+        mpm_io_csv_drop(&t);
         return status;
     }
     say(w, "\nFrom the lowest to the highest of these grids: strain %+.1f %%, energy density %+.1f %%; staged %+.1f %% "
@@ -90,7 +91,7 @@ static int substrates(work *w)
     w->s.planned = w->s.done + 4;
     say(w, "### How large a substrate must be\n\n14 um at 810 m/s without bond, %s um, axisymmetric, dampers at bottom "
            "and side, after 80 ns. Source A: 30 x 10 um; \"large\" below: 70 x 35.\n\n"
-           "| substrate, um | rebound velocity, m/s | mean plastic strain | flattening |\n|---|---|---|---|\n",
+           "| substrate, um | rebound velocity, m/s | mean plastic strain | height lost, share |\n|---|---|---|---|\n",
         budget_grid(w));
     for (k = 0; k < 4; k++) {
         impact_case c = budget_case(w);
@@ -152,8 +153,8 @@ static int jets(work *w)
     w->s.early = 0;
     w->s.planned = w->s.done + 2 * count;
     say(w, "### A-jet: below and above the critical velocity\n\n| impact | source A | cell/spacing, um | mass beyond "
-           "1.5 radii of the axis, %% | faster than 60 m/s, %% | mean velocity at the end, m/s | PBCP, %% | flattening | "
-           "CPU s |\n|---|---|---|---|---|---|---|---|---|\n");
+           "1.5 radii of the axis, %% | faster than 60 m/s, %% | mean velocity at the end, m/s | PBCP, %% | height "
+           "lost, share | CPU s |\n|---|---|---|---|---|---|---|---|---|\n");
     for (k = 0; k < 2; k++)
         for (g = 0; g < count; g++) {
             impact_case c = study_case_default();
@@ -164,8 +165,8 @@ static int jets(work *w)
             study_complete(&c, "thesis");
             if ((status = study_need(&w->s, &c, value, w->message, sizeof w->message)) <= 0) return status;
             say(w, "| %g um at %g m/s | %s | %.3g/%.3g | %.2f | %.1f | %.2f | %.2f | %.3f | %.0f |\n", size[k],
-                speed[k], said[k], c.cell, c.spacing, 100 * value[STUDY_JET], 100 * value[STUDY_EJECTED], value[STUDY_V_LATE],
-                value[STUDY_PBCP], value[STUDY_FLATTENING], value[STUDY_CPU]);
+                speed[k], said[k], c.cell, c.spacing, 100 * value[STUDY_JET], 100 * value[STUDY_EJECTED],
+                value[STUDY_V_LATE], value[STUDY_PBCP], value[STUDY_FLATTENING], value[STUDY_CPU]);
         }
     say(w, "\n");
     return 1;
@@ -182,22 +183,28 @@ static double calibration_edge(const calibration *q, const calibration_side *sid
     return 0;
 }
 
-/* A row of the table. `ratio`: least and greatest Gdot_c of 30 over that of 14 um so far. */
+/* The extremes of an edge over the grids. */
+typedef struct edge_range {
+    double low, high;
+} edge_range;
+
+/* A row of the table; the edges at the inner columns go into range[column][size]. */
 static void calibration_row(work *w, const calibration *q, const calibration_result *r, const char *picture,
-                            double ratio[2])
+                            edge_range range[][2])
 {
     long column, node, only[2] = {0, 0};
     int k;
     say(w, "| %.3g/%.3g | %s | %ld | %ld, %ld |", q->base.cell, q->base.spacing, q->rule,
         r->side[0].tests + r->side[1].tests, r->side[0].status >= 0 ? r->side[0].fit.wrong : 0,
         r->side[1].status >= 0 ? r->side[1].fit.wrong : 0);
-    for (column = 0; column < q->columns; column++) {
-        const double small = calibration_edge(q, &r->side[0], column), large = calibration_edge(q, &r->side[1], column);
-        if (column == 0 || column == q->columns - 1) continue;
-        say(w, " %.3g, %.3g |", small, large);
-        if (!(small > 0 && large > 0)) continue;
-        ratio[0] = fmin(ratio[0], large / small);
-        ratio[1] = fmax(ratio[1], large / small);
+    for (column = 1; column < q->columns - 1; column++) {
+        for (k = 0; k < 2; k++) {
+            const double edge = calibration_edge(q, &r->side[k], column);
+            range[column - 1][k].low = fmin(range[column - 1][k].low, edge);
+            range[column - 1][k].high = fmax(range[column - 1][k].high, edge);
+            say(w, "%s%.3g", k ? ", " : " ", edge);
+        }
+        say(w, " |");
     }
     for (node = 0; node < calibration_nodes(q); node++)
         for (k = 0; k < 2; k++)
@@ -207,30 +214,39 @@ static void calibration_row(work *w, const calibration *q, const calibration_res
     say(w, " | %ld, %ld |\n", only[0], only[1]);
 }
 
+#define INNER 3      /* columns of the sweep that the table shows: all but the first and the last */
+#define DESK_GRIDS 6 /* the desk budget's, of those in order of cost */
+
 static int calibrations(work *w)
 {
-    static const grid grids[9] = {{1.5, 0.5},  {1.5, 0.35}, {1.5, 0.3},  {1.0, 0.35}, {1.0, 0.25},
-                                  {1.0, 0.2}, {0.7, 0.25}, {0.7, 0.175}, {0.7, 0.15}};
+    static const grid grids[9] = {{1.5, 0.5},  {1.5, 0.35}, {1.5, 0.3},   {1.0, 0.35}, {1.0, 0.25},
+                                  {0.7, 0.25}, {1.0, 0.2},  {0.7, 0.175}, {0.7, 0.15}};
     static const char *const rules[2] = {"thesis", "stays"};
     static calibration_result result;
-    const int count = w->budget == QUICK ? 1 : 9;
-    double ratio[2] = {HUGE_VAL, 0};
+    edge_range range[2][INNER][2]; /* of rule, column, size */
+    const int count = w->budget == QUICK ? 1 : w->budget == DESK ? DESK_GRIDS : 9;
     char path[MPM_IO_PATH], name[60];
-    int g, r, crossed[2] = {0, 0}, status;
+    int g, r, k, column, crossed[2] = {0, 0}, status;
     w->s.early = 1;
-    say(w, "### A-cal: calibration\n\n14 um at 810 m/s and 30 um at 770 m/s, axisymmetric, one grid position, runs "
-           "where the class changes. Source A: G_c 1503.74 J/m2 and 2.271 (read as e5 J/(m2 us)) at 0.7/0.175, nearly "
-           "the same on all grids. Rule \"thesis\": PBCP and restitution tolerances of its Table 5.2 for the grid.\n\n"
+    for (k = 0; k < 4 * INNER; k++) {
+        edge_range *e = &range[k / 2 / INNER][k / 2 % INNER][k % 2];
+        e->low = HUGE_VAL;
+        e->high = 0;
+    }
+    say(w, "### A-cal: calibration\n\n14 um at 810 m/s and 30 um at 770 m/s, axisymmetric, the interface on a grid "
+           "plane, time step factor 0.2, runs where the class changes; Gdot_c in steps of %.0f %%. Source A: G_c "
+           "1503.74 J/m2 and 2.271 (read as e5 J/(m2 us)) at 0.7/0.175, nearly the same on all grids. Rule \"thesis\": "
+           "PBCP and restitution tolerances of its Table 5.2 for the grid.\n\n"
            "| cell/spacing, um | rule | runs | on the wrong side, 14, 30 um | highest Gdot_c that bonds 14, 30 um at "
            "G_c 1057 | 2236 | 4729 | crossings: G_c, Gdot_c | pairs run at both: only 14 um bonds, only 30 um "
-           "|\n|---|---|---|---|---|---|---|---|---|\n");
+           "|\n|---|---|---|---|---|---|---|---|---|\n", 100 * (pow(20, 1.0 / 16) - 1));
     for (g = 0; g < count; g++)
         for (r = 0; r < 2; r++) {
             calibration q = calibration_default();
             q.base.cell = grids[g].cell;
             q.base.spacing = grids[g].spacing;
             q.rule = rules[r];
-            q.columns = 5;
+            q.columns = INNER + 2;
             q.rows = 17;
             calibration_tolerances(q.base.cell, q.base.spacing, q.pbcp, q.restitution);
             if ((status = calibration_run(&q, &w->s, w->message, sizeof w->message)) <= 0) return status;
@@ -238,12 +254,20 @@ static int calibrations(work *w)
             snprintf(name, sizeof name, "calibration_%g_%g_%s.png", grids[g].cell, grids[g].spacing, rules[r]);
             if (!calibration_draw(&q, &result, data_file(w, name, path, sizeof path), "A-cal", &w->fault))
                 return failed(w);
-            calibration_row(w, &q, &result, name, ratio);
+            calibration_row(w, &q, &result, name, range[r]);
             crossed[r] += result.points > 0;
         }
-    say(w, "\nBoundaries of the two sizes cross on %d of %d grids by rule \"thesis\", on %d by \"stays\". Gdot_c at "
-           "the boundary of 30 um over that of 14 um: %.2f to %.2f.\n\n", crossed[0], count, crossed[1], ratio[0],
-        ratio[1]);
+    for (r = 0; r < 2; r++) {
+        say(w, "%sRule \"%s\": the boundaries of the two sizes cross on %d of %d grids; over the grids the edge of 14 "
+               "um lies at", r ? "" : "\n", rules[r], crossed[r], count);
+        for (k = 0; k < 2; k++) {
+            say(w, k ? ", that of 30 um at" : "");
+            for (column = 0; column < INNER; column++)
+                say(w, "%s %.3g - %.3g", column ? "," : "", range[r][column][k].low, range[r][column][k].high);
+        }
+        say(w, ".\n");
+    }
+    say(w, "\n");
     return 1;
 }
 
@@ -252,20 +276,25 @@ static int calibrations(work *w)
 /* The strain rule's critical strain is halved in on the PBCP that the energy rule gives. */
 static int sites(work *w)
 {
-    double value[2][STUDY_VALUES], low = 0.5, high = 8;
+    double value[2][STUDY_VALUES], tried[STUDY_VALUES], low = 0.5, high = 8, strain = 0, off, least = HUGE_VAL;
     impact_case c = budget_case(w);
     int k, status;
     w->s.early = 0;
-    w->s.planned = w->s.done + 8;
-    c.time = 30;
+    w->s.planned = w->s.done + 10;
+    c.time = 30; /* as its Fig. 5.17 */
     study_complete(&c, "thesis");
     if ((status = study_need(&w->s, &c, value[0], w->message, sizeof w->message)) <= 0) return status;
     c.bond = "strain";
     for (k = 0; k < 9; k++) {
         c.eps_c = (low + high) / 2;
-        if ((status = study_need(&w->s, &c, value[1], w->message, sizeof w->message)) <= 0) return status;
-        if (value[1][STUDY_PBCP] > value[0][STUDY_PBCP]) low = c.eps_c;
+        if ((status = study_need(&w->s, &c, tried, w->message, sizeof w->message)) <= 0) return status;
+        if (tried[STUDY_PBCP] > value[0][STUDY_PBCP]) low = c.eps_c;
         else high = c.eps_c;
+        off = fabs(tried[STUDY_PBCP] - value[0][STUDY_PBCP]);
+        if (off >= least) continue;
+        least = off;
+        memcpy(value[1], tried, sizeof tried); /* the nearest so far */
+        strain = c.eps_c;
     }
     say(w, "### A-site: where it bonds\n\n14 um at 810 m/s after 30 ns, %s um, axisymmetric. Source A: at equal PBCP "
            "the energy rule bonds nearer the south pole, the strain rule at the rim. The strain rule's critical strain "
@@ -277,8 +306,8 @@ static int sites(work *w)
         say(w, "| %s | %.2f | %.3f | %.3f | %.3f | %.1f |\n", k ? "strain" : "energy", value[k][STUDY_PBCP],
             value[k][STUDY_R_BONDED], value[k][STUDY_R_CONTACT], value[k][STUDY_R_BONDED] / value[k][STUDY_R_CONTACT],
             100 * value[k][STUDY_INNER]);
-    say(w, "\nCritical strain %.3g at 1350 per us. %s\n\n", c.eps_c,
-        value[0][STUDY_R_BONDED] < value[1][STUDY_R_BONDED] ? "The statement comes back."
+    say(w, "\nCritical strain %.3g at 1350 per us. %s\n\n", strain,
+        value[0][STUDY_INNER] > value[1][STUDY_INNER] ? "The statement comes back."
                                                             : "The statement does not come back.");
     return 1;
 }
@@ -435,7 +464,7 @@ static int two_particles(work *w)
     for (k = 0; k < TWO_RUNS && status > 0; k++)
         if (two_runs[k].budgets & 1 << w->budget) status = two_row(w, &t, &two_runs[k]);
     if (status <= 0) {
-        mpm_io_csv_end(&t, NULL);
+        mpm_io_csv_drop(&t);
         return status;
     }
     say(w, "\nSource A: the one at 7.5 um rebounds, the others stay.\n\n");
@@ -477,6 +506,24 @@ static int ten_particles(work *w)
 
 typedef int (*part_fn)(work *w);
 
+#define PARTS "conv,dt,jet,substrate,crit,scatter,held,unit,length,pairs,cal,site,two,ten"
+
+/* Whether a list names parts only, or "none". */
+static int parts_known(work *w, const char *name, const char *list)
+{
+    char word[40];
+    while (*list) {
+        const size_t n = strcspn(list, ",");
+        snprintf(word, sizeof word, "%.*s", n < sizeof word ? (int)n : (int)sizeof word - 1, list);
+        if (!listed(PARTS ",none", word)) {
+            snprintf(w->message, sizeof w->message, "--%s %s: no such part; there are " PARTS, name, word);
+            return 0;
+        }
+        list += n + (list[n] == ',');
+    }
+    return 1;
+}
+
 /* All parts, or those that --only names. As study_need. */
 static int parts(work *w)
 {
@@ -490,13 +537,13 @@ static int parts(work *w)
     const int count = (int)(sizeof part / sizeof part[0]), budget = w->budget;
     int k, status;
     say(w,
-        "## Source A's results again\n\nMade by `make reproduction BUDGET=%s` (mpm.h %s); the tables are in "
-        "[data](data).%s%s\n\n",
-        w->budget_name, MPM_VERSION, *w->desk ? " At the desk budget: " : "", w->desk);
+        "## Source A's results again\n\nMade by `build/reproduction --budget %s%s%s%s%s` (mpm.h %s). Pictures, and the "
+        "tables of A-conv, A-crit, the scatter and A-two as CSV, are in [data](data).\n\n",
+        w->budget_name, *w->desk ? " --desk " : "", w->desk, *w->only ? " --only " : "", w->only, MPM_VERSION);
     for (k = 0; k < count; k++) {
-        if (*w->only && !strstr(w->only, part[k].name)) continue;
+        if (*w->only && !listed(w->only, part[k].name)) continue;
         if (!w->s.quiet) fprintf(stderr, "\rA-%-97s\n", part[k].name);
-        w->budget = budget == QUICK && strstr(w->desk, part[k].name) ? DESK : budget;
+        w->budget = budget == QUICK && listed(w->desk, part[k].name) ? DESK : budget;
         status = part[k].run(w);
         study_progress_end(&w->s);
         if (status <= 0) return status;
@@ -519,7 +566,7 @@ int main(int argc, char **argv)
     w.only = w.desk = "";
     option_add(o, &n, "budget", OPTION_TEXT, &w.budget_name, "quick|desk|full");
     option_add(o, &n, "only", OPTION_TEXT, &w.only,
-               "parts: of conv,dt,jet,substrate,crit,scatter,held,unit,length,pairs,cal,site,two,ten; empty: all");
+               "parts that the page then holds, of " PARTS "; empty: all");
     option_add(o, &n, "desk", OPTION_TEXT, &w.desk, "parts that a quick budget runs as desk does");
     option_add(o, &n, "limit", OPTION_LONG, &w.s.limit, "stop after so many new runs; < 0: never");
     option_add(o, &n, "out", OPTION_TEXT, &w.s.folder, "finished runs, to go on from");
@@ -530,7 +577,8 @@ int main(int argc, char **argv)
         argc, argv, "Source A's results again, beside its numbers; run again after an interruption, it goes on.", o, n);
     if (parsed) return parsed < 0;
     w.budget = case_word("quick|desk|full", w.budget_name);
-    if (!case_knows("quick|desk|full", "budget", w.budget_name, w.message, sizeof w.message))
+    if (!case_knows("quick|desk|full", "budget", w.budget_name, w.message, sizeof w.message) ||
+        !parts_known(&w, "only", w.only) || !parts_known(&w, "desk", w.desk))
         return !complain(w.message);
     if (mpm_io_make_directory(w.data, &w.fault) < 0) return !report(&w.fault, w.data);
     status = parts(&w);

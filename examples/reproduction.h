@@ -43,6 +43,26 @@ static inline const char *velocity_text(double v, double high, char *text, size_
     return text;
 }
 
+/* "9.56"; "-" where nothing was measured. */
+static inline const char *measure_text(double v, char *text, size_t n)
+{
+    if (fabs(v) < HUGE_VAL) snprintf(text, n, "%.2f", v);
+    else snprintf(text, n, "-");
+    return text;
+}
+
+/* Whether a word is in a list "conv,dt,jet". */
+static inline int listed(const char *list, const char *word)
+{
+    const size_t n = strlen(word);
+    while (*list) {
+        const size_t length = strcspn(list, ",");
+        if (length == n && !strncmp(list, word, n)) return 1;
+        list += length + (list[length] == ',');
+    }
+    return 0;
+}
+
 static inline int failed(work *w)
 {
     mpm_io_fault_text(w->message, sizeof w->message, &w->fault);
@@ -58,26 +78,39 @@ static inline const char *data_file(const work *w, const char *name, char *path,
 #define BEGIN_MARK "<!-- made by build/reproduction: begin -->\n"
 #define END_MARK "<!-- made by build/reproduction: end -->\n"
 
-/* Puts the text between its marks in the page, or at the page's end if it has none; the rest stays. */
+/* Puts the text between its marks in the page, or at the page's end if it has none; the rest stays. The old
+   page goes only when the new one is whole. */
 static inline int write_page(work *w)
 {
     static char old[400000];
+    char part[MPM_IO_PATH];
     const char *from, *to;
     size_t n = 0, kept;
+    int ok;
     FILE *f = fopen(w->page, "rb");
     if (f) {
-        n = fread(old, 1, sizeof old - 1, f);
+        n = fread(old, 1, sizeof old, f);
         fclose(f);
+    }
+    if (n == sizeof old) {
+        snprintf(w->message, sizeof w->message, "%.300s: longer than %lu characters", w->page,
+                 (unsigned long)sizeof old - 1);
+        return 0;
     }
     old[n] = 0;
     from = strstr(old, BEGIN_MARK);
     to = from ? strstr(from, END_MARK) : NULL;
     kept = to ? (size_t)(from - old) : n;
-    f = fopen(w->page, "wb");
+    snprintf(part, sizeof part, "%.500s.part", w->page);
+    f = fopen(part, "wb");
     if (f) {
         fwrite(old, 1, kept, f);
         fprintf(f, "%s%s%s%s%s", to ? "" : "\n", BEGIN_MARK, w->text, END_MARK, to ? to + strlen(END_MARK) : "");
-        if (fclose(f) == 0) return 1;
+        ok = !ferror(f);
+        if (fclose(f) == 0 && ok) {
+            remove(w->page); /* rename() need not replace */
+            if (rename(part, w->page) == 0) return 1;
+        }
     }
     snprintf(w->message, sizeof w->message, "cannot write %.300s", w->page);
     return 0;

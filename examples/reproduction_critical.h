@@ -107,7 +107,7 @@ static inline int critical_row(work *w, mpm_io_csv *t, const critical_setting *g
 {
     critical_range range = critical_budget(w);
     impact_case c = study_case_default();
-    char difference[40] = "-", first[40];
+    char difference[40] = "-", first[40], pbcp[40];
     int status;
     c.diameter = sizes[size];
     c.cell = g->cell;
@@ -142,8 +142,8 @@ static inline int critical_row(work *w, mpm_io_csv *t, const critical_setting *g
     say(w, "| %g | %s | %s, %g x %g | %d | %.0f | ", sizes[size], rule_name, g->name, c.substrate_diameter,
         c.substrate_height, g->times[size], said_critical[size]);
     say_spread(w, &out->spread, range.high);
-    say(w, " | %s | %s | %.2f | %d | %.0f |\n", difference, velocity_text(out->first, range.high, first, sizeof first),
-        out->spread.middle.pbcp, out->lost, out->cpu);
+    say(w, " | %s | %s | %s | %d | %.0f |\n", difference, velocity_text(out->first, range.high, first, sizeof first),
+        measure_text(out->spread.middle.pbcp, pbcp, sizeof pbcp), out->lost, out->cpu);
     return 1;
 }
 
@@ -215,7 +215,7 @@ static inline int critical(work *w)
     critical_line line[SETTINGS];
     char path[MPM_IO_PATH];
     mpm_io_csv t;
-    int lines, status;
+    int lines, k, status;
     w->s.early = 1;
     mpm_io_csv_begin(&t, data_file(w, "critical_velocity.csv", path, sizeof path),
                      "diameter_um,critical_velocity_m_s,lowest_m_s,highest_m_s,offsets,pbcp_percent,v_rest_m_s,cell_um,"
@@ -227,17 +227,22 @@ static inline int critical(work *w)
            "budget: one position, halved between 600 and 1000 m/s). Rule \"thesis\": PBCP at least 5.0 %% and rebound "
            "at most 0.6 m/s, 4.8 %% and 0.9 m/s at 14 um, relative to the substrate; \"stays\": late mean velocity "
            "under 2 m/s and the bond at work. \"Not above\": tested velocities above the critical one that do not "
-           "bond, all positions together. \"On the plane\": the interface on a grid plane. Source A ran one position at "
-           "0.7/0.175, which is not stated. Experiment: 810 m/s (14 um), 770 (30 um).\n\n"
+           "bond, all positions together. \"On the plane\": the interface on a grid plane. Source A ran one position, "
+           "not stated, at 0.7/0.175. Experiment: 810 m/s (14 um), 770 (30 um).\n\n"
            "| um | rule | cell/spacing, substrate, um | positions | source A | here | lowest - highest | difference "
            "| on the plane | PBCP, %% | not above | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
         range.low, range.high, range.step);
     status = critical_rows(w, &t, line, &lines);
     if (status <= 0) {
-        mpm_io_csv_end(&t, NULL);
+        mpm_io_csv_drop(&t);
         return status;
     }
-    say(w, "\n![Critical velocity](data/critical_velocity.png)\n\n");
+    say(w, "\n![Critical velocity](data/critical_velocity.png)\n\nFor comparison, formulas fitted to many metals "
+           "(Assadi et al.): 2003, without size, %.0f m/s; 2011, for", mpm_critical_velocity_2003(2.7, 660, 110, 20));
+    for (k = 0; k < SIZES; k++)
+        say(w, "%s %g um %.0f", k ? "," : "", sizes[k],
+            mpm_critical_velocity_2011(sizes[k], 900, 933, 293, 110e6, 2700));
+    say(w, " m/s (tensile strength 110 MPa, 20 C).\n\n");
     if (mpm_io_csv_end(&t, &w->fault) < 0) return failed(w);
     return critical_plot(w, line, lines);
 }
@@ -285,8 +290,8 @@ static inline int scatter(work *w)
                {"GIMP", VARY_GRID, "gimp", "ranked", "mean", "thesis", 0, 0, 0},
                {"logistic normals", VARY_GRID, "linear", "logistic", "mean", "thesis", 0, 0, 0},
                {"nodal D weighted with N", VARY_GRID, "linear", "ranked", "weighted", "thesis", 0, 0, 0},
-               {"held in parts, D 0.5 to 1.5", VARY_GRID, "linear", "ranked", "mean", "thesis", 0, 1, 0},
-               {"GIMP, logistic, weighted, in parts", VARY_GRID, "gimp", "logistic", "weighted", "thesis", 0, 1, 0},
+               {"threshold softened, from D 0.5", VARY_GRID, "linear", "ranked", "mean", "thesis", 0, 1, 0},
+               {"GIMP, logistic, weighted, softened", VARY_GRID, "gimp", "logistic", "weighted", "thesis", 0, 1, 0},
                {"contact where points touch", VARY_GRID, "linear", "ranked", "mean", "thesis", 1, 0, 0},
                {"GIMP, logistic, where points touch", VARY_GRID, "gimp", "logistic", "mean", "thesis", 1, 0, 0},
                {"friction 0.2", VARY_GRID, "linear", "ranked", "mean", "thesis", 0, 0, 0.2},
@@ -319,7 +324,7 @@ static inline int scatter(work *w)
         study_complete(&c, row[k].substrate);
         status = critical_repeat(w, c, row[k].vary, "thesis", range, times, &out);
         if (status <= 0) {
-            mpm_io_csv_end(&t, NULL);
+            mpm_io_csv_drop(&t);
             return status;
         }
         mpm_io_csv_text(&t, row[k].what);
@@ -355,12 +360,14 @@ static inline int rate_unit(work *w)
         budget_grid(w), range.low, range.high);
     for (power = 0; power < 8; power++) {
         impact_case c = budget_case(w);
-        char text[40];
+        char text[40], pbcp[40];
         c.gdot = 2.271 * pow(10, power);
         study_complete(&c, "thesis");
         if ((status = critical_repeat(w, c, VARY_GRID, "thesis", range, 1, &out)) <= 0) return status;
-        say(w, "| 2.271e%d | %s%s | %.2f |\n", power, out.spread.middle.below > 0 ? "" : "at most ",
-            velocity_text(out.spread.median, range.high, text, sizeof text), out.spread.middle.pbcp);
+        say(w, "| 2.271e%d | %s%s | %s |\n", power,
+            out.spread.middle.below > 0 || !(out.spread.median < HUGE_VAL) ? "" : "at most ",
+            velocity_text(out.spread.median, range.high, text, sizeof text),
+            measure_text(out.spread.middle.pbcp, pbcp, sizeof pbcp));
     }
     say(w, "\n");
     return 1;
@@ -371,16 +378,17 @@ static inline int regularisation(work *w)
 {
     static const grid grids[3] = {{1.5, 0.5}, {1.0, 0.25}, {0.7, 0.175}};
     const int count = w->budget == QUICK ? 2 : 3, times = budget_times(w);
-    const critical_range range = critical_budget(w);
+    critical_range range = critical_budget(w);
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {0, 0};
     critical_outcome out;
+    char pbcp[40];
     int g, k, status;
     w->s.early = 1;
     w->s.planned = w->s.done + 2 * count * times * critical_cost(&range);
     say(w, "### With and without DCell\n\nCritical velocity of 14 um, rule \"thesis\", axisymmetric, %d positions of "
            "the grid: the energy rule with the cell as its length (A 4.16), and with 1 um on every grid.\n\n"
-           "| cell/spacing, um | with DCell: median, m/s | lowest - highest | 1 um: median, m/s | lowest - highest "
-           "|\n|---|---|---|---|---|\n", times);
+           "| cell/spacing, um | with DCell: median, m/s | lowest - highest | PBCP there, %% | 1 um: median, m/s | "
+           "lowest - highest | PBCP there, %% |\n|---|---|---|---|---|---|---|\n", times);
     for (g = 0; g < count; g++) {
         say(w, "| %.3g/%.3g", grids[g].cell, grids[g].spacing);
         for (k = 0; k < 2; k++) {
@@ -392,13 +400,17 @@ static inline int regularisation(work *w)
             if ((status = critical_repeat(w, c, VARY_GRID, "thesis", range, times, &out)) <= 0) return status;
             say(w, " | ");
             say_spread(w, &out.spread, range.high);
+            say(w, " | %s", measure_text(out.spread.middle.pbcp, pbcp, sizeof pbcp));
             low[k] = fmin(low[k], out.spread.median);
             high[k] = fmax(high[k], out.spread.median);
         }
         say(w, " |\n");
     }
-    say(w, "\nFrom the lowest to the highest median: %.0f m/s with DCell, %.0f without.\n\n", high[0] - low[0],
-        high[1] - low[1]);
+    for (k = 0; k < 2; k++)
+        if (high[k] < HUGE_VAL)
+            say(w, "%sFrom the lowest to the highest median %s DCell: %.0f m/s.\n", k ? "" : "\n",
+                k ? "without" : "with", high[k] - low[k]);
+    say(w, "\n");
     return 1;
 }
 
@@ -408,6 +420,7 @@ static inline int other_pairs(work *w)
     static const double pair[3][2] = {{500, 1.35e6}, {1503.74, 2.271e5}, {5000, 2.6e5}};
     const critical_range range = critical_budget(w);
     critical_outcome out;
+    char pbcp[40];
     int p, k, status;
     w->s.early = 1;
     w->s.planned = w->s.done + 6 * 4 * critical_cost(&range);
@@ -425,7 +438,7 @@ static inline int other_pairs(work *w)
             if ((status = critical_repeat(w, c, VARY_GRID, "stays", range, 4, &out)) <= 0) return status;
             say(w, " | ");
             say_spread(w, &out.spread, range.high);
-            say(w, " | %.2f", out.spread.middle.pbcp);
+            say(w, " | %s", measure_text(out.spread.middle.pbcp, pbcp, sizeof pbcp));
         }
         say(w, " |\n");
     }

@@ -73,7 +73,7 @@ enum {
     STUDY_PBCP,       /* % */
     STUDY_ABP,
     STUDY_CONTACTED,  /* surface points */
-    STUDY_V_REST,     /* mean over the particle's points up to 60 m/s, at the end */
+    STUDY_V_REST,     /* mean over the particle's points up to 60 m/s (as seen from the ground), at the end */
     STUDY_V_MEAN,     /* mass-weighted mean, at the end */
     STUDY_V_LATE,     /* the same averaged over the last eighth of the time */
     STUDY_DRIFT,      /* the substrate's mean */
@@ -146,7 +146,7 @@ static inline void study_progress_end(const study *s)
     if (!s->quiet) fprintf(stderr, "\r%-100s\r", "");
 }
 
-/* Mean height and velocity of the particle over those of the substrate. */
+/* Mean height and velocity of the particle over those of the substrate, of the points still in the grid. */
 static inline void study_distance(const mpm_world *w, double *height, double *velocity)
 {
     double sum[2][3] = {{0, 0, 0}, {0, 0, 0}};

@@ -199,12 +199,13 @@ static void reproduction(void)
     made = (int)strtol(text, NULL, 10);
     CHECK_EQUAL("the next one makes the second run", made, 2);
     CHECK_EQUAL("no part at all",
-                run("reproduction --quiet --only nothing --data " FOLDER "/data --page " FOLDER "/page.md"), 0);
+                run("reproduction --quiet --only none --data " FOLDER "/data --page " FOLDER "/page.md"), 0);
     contents(FOLDER "/page.md", text, sizeof text);
     CHECK_TRUE("... replaces what stood between the marks", !strstr(text, "\nold\n") && strstr(text, "BUDGET=quick"));
     CHECK_TRUE("... and keeps the rest", !strncmp(text, "before\n<!--", 11) && strstr(text, "end -->\nbehind\n"));
     refused("reproduction --budget lavish", "lavish");
-    refused("reproduction --only nothing --data /proc/none", "/proc/none");
+    refused("reproduction --only crit,crti", "crti");
+    refused("reproduction --only none --data /proc/none", "/proc/none");
 }
 
 /* Runs are known by their options: a member without one would mix different cases up. */

@@ -201,7 +201,7 @@ static void reproduction(void)
     CHECK_EQUAL("no part at all",
                 run("reproduction --quiet --only none --data " FOLDER "/data --page " FOLDER "/page.md"), 0);
     contents(FOLDER "/page.md", text, sizeof text);
-    CHECK_TRUE("... replaces what stood between the marks", !strstr(text, "\nold\n") && strstr(text, "BUDGET=quick"));
+    CHECK_TRUE("... replaces what stood between the marks", !strstr(text, "\nold\n") && strstr(text, "--budget quick"));
     CHECK_TRUE("... and keeps the rest", !strncmp(text, "before\n<!--", 11) && strstr(text, "end -->\nbehind\n"));
     refused("reproduction --budget lavish", "lavish");
     refused("reproduction --only crit,crti", "crti");

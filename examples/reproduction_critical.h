@@ -92,12 +92,14 @@ typedef struct critical_setting {
     int times[SIZES], budgets;
 } critical_setting;
 
-#define SETTINGS 6
+#define SETTINGS 8
 static const critical_setting settings[SETTINGS] = {
     {1.5, 0.5, "axisymmetric", "thesis", "1.5/0.5", {4, 4, 4, 4, 4}, 1 << QUICK},
     {1.0, 0.25, "axisymmetric", "thesis", "1/0.25", {8, 8, 8, 8, 8}, 1 << DESK | 1 << FULL},
-    {0.7, 0.175, "axisymmetric", "thesis", "0.7/0.175", {8, 0, 4, 0, 4}, 1 << DESK | 1 << FULL},
-    {1.0, 0.25, "axisymmetric", "large", "1/0.25, large substrate", {8, 0, 0, 0, 4}, 1 << DESK | 1 << FULL},
+    {0.7, 0.175, "axisymmetric", "thesis", "0.7/0.175", {8, 0, 0, 0, 4}, 1 << DESK},
+    {0.7, 0.175, "axisymmetric", "thesis", "0.7/0.175", {8, 8, 8, 8, 8}, 1 << FULL},
+    {1.0, 0.25, "axisymmetric", "large", "1/0.25, large substrate", {8, 0, 0, 0, 0}, 1 << DESK},
+    {1.0, 0.25, "axisymmetric", "large", "1/0.25, large substrate", {8, 8, 8, 8, 8}, 1 << FULL},
     {0.7, 0.175, "3d", "thesis", "0.7/0.175, 3D", {1, 0, 0, 0, 0}, 1 << DESK},
     {0.7, 0.175, "3d", "thesis", "0.7/0.175, 3D", {8, 8, 8, 8, 8}, 1 << FULL}};
 
@@ -419,18 +421,21 @@ static inline int other_pairs(work *w)
 {
     static const double pair[3][2] = {{500, 1.35e6}, {1503.74, 2.271e5}, {5000, 2.6e5}};
     const critical_range range = critical_budget(w);
+    const grid g = {w->budget == FULL ? 1.0 : 1.5, w->budget == FULL ? 0.25 : 0.5};
     critical_outcome out;
     char pbcp[40];
     int p, k, status;
     w->s.early = 1;
     w->s.planned = w->s.done + 6 * 4 * critical_cost(&range);
-    say(w, "### Other pairs\n\nRule \"stays\", %s um, axisymmetric, four positions of the grid.\n\n"
+    say(w, "### Other pairs\n\nRule \"stays\", %.3g/%.3g um, axisymmetric, four positions of the grid.\n\n"
            "| G_c, J/m2 | Gdot_c, J/(m2 us) | 14 um: median, m/s | lowest - highest | PBCP there, %% | 30 um: median, "
-           "m/s | lowest - highest | PBCP there, %% |\n|---|---|---|---|---|---|---|---|\n", budget_grid(w));
+           "m/s | lowest - highest | PBCP there, %% |\n|---|---|---|---|---|---|---|---|\n", g.cell, g.spacing);
     for (p = 0; p < 3; p++) {
         say(w, "| %g | %.4g", pair[p][0], pair[p][1]);
         for (k = 0; k < 2; k++) {
-            impact_case c = budget_case(w);
+            impact_case c = study_case_default();
+            c.cell = g.cell;
+            c.spacing = g.spacing;
             c.diameter = k ? 30 : 14;
             c.gc = pair[p][0];
             c.gdot = pair[p][1];

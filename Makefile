@@ -5,7 +5,7 @@
 #   make bench      speed, as ratios measured in one run
 #   make impacts    the impacts of docs/reproduction.md: bonded, unbonded, whole model (4 minutes)
 #   make spray-study source B's results again: a quarter of an hour, resumable; BUDGET=quick: less
-#   make reproduction source A's results again: half an hour; BUDGET=desk, full: more; resumable
+#   make reproduction source A's results again: half an hour; BUDGET=desk: six hours; full: days; resumable
 #   make verify     the verification ladder again: writes docs/verification.md; resumable, `make -j2 verify`
 #   make clean
 
@@ -72,7 +72,7 @@ impacts: build/impact
 		build/bonded/summary.json build/unbonded/summary.json build/whole/summary.json
 
 # Writes its part of docs/reproduction.md, and docs/data; finished runs are kept in build/reproduction-out.
-# DESK=crit,held runs these parts at the desk budget.
+# The page in this repository is that of BUDGET=desk. DESK=crit,held runs these parts at the desk budget.
 reproduction: BUDGET = quick
 reproduction: build/reproduction
 	build/reproduction --budget $(BUDGET) --desk "$(DESK)"

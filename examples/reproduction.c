@@ -188,15 +188,23 @@ typedef struct edge_range {
     double low, high;
 } edge_range;
 
-/* A row of the table; the edges at the inner columns go into range[column][size]. */
-static void calibration_row(work *w, const calibration *q, const calibration_result *r, const char *picture,
-                            edge_range range[][2])
+/* A row of the table, and of the file one per column; the edges at the inner columns go into
+   range[column][size]. */
+static void calibration_row(work *w, mpm_io_csv *t, const calibration *q, const calibration_result *r,
+                            const char *picture, edge_range range[][2])
 {
     long column, node, only[2] = {0, 0};
     int k;
     say(w, "| %.3g/%.3g | %s | %ld | %ld, %ld |", q->base.cell, q->base.spacing, q->rule,
         r->side[0].tests + r->side[1].tests, r->side[0].status >= 0 ? r->side[0].fit.wrong : 0,
         r->side[1].status >= 0 ? r->side[1].fit.wrong : 0);
+    for (column = 0; column < q->columns; column++) {
+        mpm_io_csv_real(t, (mpm_real)q->base.cell);
+        mpm_io_csv_real(t, (mpm_real)q->base.spacing);
+        mpm_io_csv_text(t, q->rule);
+        mpm_io_csv_real(t, (mpm_real)calibration_gc(q, column));
+        for (k = 0; k < 2; k++) mpm_io_csv_real(t, (mpm_real)calibration_edge(q, &r->side[k], column));
+    }
     for (column = 1; column < q->columns - 1; column++) {
         for (k = 0; k < 2; k++) {
             const double edge = calibration_edge(q, &r->side[k], column);
@@ -217,22 +225,50 @@ static void calibration_row(work *w, const calibration *q, const calibration_res
 #define INNER 3      /* columns of the sweep that the table shows: all but the first and the last */
 #define DESK_GRIDS 6 /* the desk budget's, of those in order of cost */
 
-static int calibrations(work *w)
+/* All grids by both rules. As study_need. */
+static int calibration_rows(work *w, mpm_io_csv *t, int count, edge_range range[2][INNER][2], int crossed[2])
 {
     static const grid grids[9] = {{1.5, 0.5},  {1.5, 0.35}, {1.5, 0.3},   {1.0, 0.35}, {1.0, 0.25},
                                   {0.7, 0.25}, {1.0, 0.2},  {0.7, 0.175}, {0.7, 0.15}};
-    static const char *const rules[2] = {"thesis", "stays"};
     static calibration_result result;
+    char path[MPM_IO_PATH], name[60];
+    int g, r, status;
+    for (g = 0; g < count; g++)
+        for (r = 0; r < 2; r++) {
+            calibration q = calibration_default();
+            q.base.cell = grids[g].cell;
+            q.base.spacing = grids[g].spacing;
+            q.rule = rule_names[r];
+            q.columns = INNER + 2;
+            q.rows = 17;
+            calibration_tolerances(q.base.cell, q.base.spacing, q.pbcp, q.restitution);
+            if ((status = calibration_run(&q, &w->s, w->message, sizeof w->message)) <= 0) return status;
+            calibration_collect(&q, &w->s, &result);
+            snprintf(name, sizeof name, "calibration_%g_%g_%s.png", grids[g].cell, grids[g].spacing, rule_names[r]);
+            if (!calibration_draw(&q, &result, data_file(w, name, path, sizeof path), "A-cal", &w->fault))
+                return failed(w);
+            calibration_row(w, t, &q, &result, name, range[r]);
+            crossed[r] += result.points > 0;
+        }
+    return 1;
+}
+
+static int calibrations(work *w)
+{
     edge_range range[2][INNER][2]; /* of rule, column, size */
     const int count = w->budget == QUICK ? 1 : w->budget == DESK ? DESK_GRIDS : 9;
-    char path[MPM_IO_PATH], name[60];
-    int g, r, k, column, crossed[2] = {0, 0}, status;
+    char path[MPM_IO_PATH];
+    mpm_io_csv t;
+    int r, k, column, crossed[2] = {0, 0}, status;
     w->s.early = 1;
     for (k = 0; k < 4 * INNER; k++) {
         edge_range *e = &range[k / 2 / INNER][k / 2 % INNER][k % 2];
         e->low = HUGE_VAL;
         e->high = 0;
     }
+    mpm_io_csv_begin(&t, data_file(w, "calibration.csv", path, sizeof path),
+                     "cell_um,spacing_um,rule,gc,highest_gdot_14um,highest_gdot_30um", "A-cal; 0: none bonds",
+                     &w->fault);
     say(w, "### A-cal: calibration\n\n14 um at 810 m/s and 30 um at 770 m/s, axisymmetric, the interface on a grid "
            "plane, time step factor 0.2, runs where the class changes; Gdot_c in steps of %.0f %%. Source A: G_c "
            "1503.74 J/m2 and 2.271 (read as e5 J/(m2 us)) at 0.7/0.175, nearly the same on all grids. Rule \"thesis\": "
@@ -240,26 +276,13 @@ static int calibrations(work *w)
            "| cell/spacing, um | rule | runs | on the wrong side, 14, 30 um | highest Gdot_c that bonds 14, 30 um at "
            "G_c 1057 | 2236 | 4729 | crossings: G_c, Gdot_c | pairs run at both: only 14 um bonds, only 30 um "
            "|\n|---|---|---|---|---|---|---|---|---|\n", 100 * (pow(20, 1.0 / 16) - 1));
-    for (g = 0; g < count; g++)
-        for (r = 0; r < 2; r++) {
-            calibration q = calibration_default();
-            q.base.cell = grids[g].cell;
-            q.base.spacing = grids[g].spacing;
-            q.rule = rules[r];
-            q.columns = INNER + 2;
-            q.rows = 17;
-            calibration_tolerances(q.base.cell, q.base.spacing, q.pbcp, q.restitution);
-            if ((status = calibration_run(&q, &w->s, w->message, sizeof w->message)) <= 0) return status;
-            calibration_collect(&q, &w->s, &result);
-            snprintf(name, sizeof name, "calibration_%g_%g_%s.png", grids[g].cell, grids[g].spacing, rules[r]);
-            if (!calibration_draw(&q, &result, data_file(w, name, path, sizeof path), "A-cal", &w->fault))
-                return failed(w);
-            calibration_row(w, &q, &result, name, range[r]);
-            crossed[r] += result.points > 0;
-        }
+    if ((status = calibration_rows(w, &t, count, range, crossed)) <= 0) {
+        mpm_io_csv_drop(&t);
+        return status;
+    }
     for (r = 0; r < 2; r++) {
         say(w, "%sRule \"%s\": the boundaries of the two sizes cross on %d of %d grids; over the grids the edge of 14 "
-               "um lies at", r ? "" : "\n", rules[r], crossed[r], count);
+               "um lies at", r ? "" : "\n", rule_names[r], crossed[r], count);
         for (k = 0; k < 2; k++) {
             say(w, k ? ", that of 30 um at" : "");
             for (column = 0; column < INNER; column++)
@@ -268,7 +291,7 @@ static int calibrations(work *w)
         say(w, ".\n");
     }
     say(w, "\n");
-    return 1;
+    return mpm_io_csv_end(&t, &w->fault) >= 0 || failed(w);
 }
 
 /* ---- A-site -------------------------------------------------------------------------------- */
@@ -538,7 +561,7 @@ static int parts(work *w)
     int k, status;
     say(w,
         "## Source A's results again\n\nMade by `build/reproduction --budget %s%s%s%s%s` (mpm.h %s). Pictures, and the "
-        "tables of A-conv, A-crit, the scatter and A-two as CSV, are in [data](data).\n\n",
+        "tables of A-conv, A-crit, the scatter, A-cal and A-two as CSV, are in [data](data).\n\n",
         w->budget_name, *w->desk ? " --desk " : "", w->desk, *w->only ? " --only " : "", w->only, MPM_VERSION);
     for (k = 0; k < count; k++) {
         if (*w->only && !listed(w->only, part[k].name)) continue;

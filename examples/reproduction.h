@@ -23,6 +23,9 @@ typedef struct grid {
     double cell, spacing;
 } grid;
 
+/* What may count as bonded: see critical_rule. */
+static const char *const rule_names[2] = {"thesis", "stays"};
+
 /* ---- the page ------------------------------------------------------------------------------ */
 
 static inline void say(work *w, const char *format, ...)

@@ -189,7 +189,6 @@ static inline int critical_plot(work *w, const critical_line *ours, int count)
 
 static inline int critical_rows(work *w, mpm_io_csv *t, critical_line *line, int *lines)
 {
-    static const char *const rules[2] = {"thesis", "stays"};
     critical_outcome out;
     int g, r, k, status;
     *lines = 0;
@@ -201,7 +200,7 @@ static inline int critical_rows(work *w, mpm_io_csv *t, critical_line *line, int
         for (r = 0; r < 2; r++)
             for (k = 0; k < SIZES; k++) {
                 if (settings[g].times[k] == 0) continue;
-                if ((status = critical_row(w, t, &settings[g], k, rules[r], &out)) <= 0) return status;
+                if ((status = critical_row(w, t, &settings[g], k, rule_names[r], &out)) <= 0) return status;
                 if (r > 0 || !(out.spread.median < HUGE_VAL)) continue;
                 ours->x[ours->count] = (mpm_real)sizes[k];
                 ours->y[ours->count++] = (mpm_real)out.spread.median;
@@ -459,7 +458,6 @@ static inline int held_out(work *w)
         double diameter, velocity;
         int bonds;
     } row[4] = {{45, 550, 0}, {38, 780, 1}, {22, 752, 0}, {22, 1066, 1}};
-    static const char *const names[2] = {"thesis", "stays"};
     const int times = budget_times(w);
     double value[STUDY_VALUES];
     int k, i, r, status;
@@ -479,7 +477,7 @@ static inline int held_out(work *w)
             if ((status = study_need(&w->s, &c, value, w->message, sizeof w->message)) <= 0) return status;
             for (r = 0; r < 2; r++) {
                 critical_rule rule = critical_rule_default();
-                rule.name = names[r];
+                rule.name = rule_names[r];
                 right[r] += critical_bonds(&rule, c.diameter, value) == row[k].bonds;
             }
         }

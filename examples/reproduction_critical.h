@@ -14,9 +14,11 @@ typedef enum variation {
     VARY_STEP  /* time step, down to 9/10 */
 } variation;
 
+#define REPEATS 16
+
 typedef struct critical_outcome {
     critical_spread spread;
-    double first; /* of the first repetition: a grid plane on the interface */
+    double each[REPEATS]; /* in order; the first: a grid plane on the interface */
     int lost;   /* tested velocities above the critical one that do not bond, all repetitions together */
     double cpu; /* s */
 } critical_outcome;
@@ -26,7 +28,7 @@ static inline int critical_repeat(work *w, impact_case c, variation vary, const 
                                   int times, critical_outcome *out)
 {
     static critical_curve curve;
-    critical_answer a[16];
+    critical_answer a[REPEATS];
     critical_rule rule = critical_rule_default();
     int k, status;
     rule.name = rule_name;
@@ -42,9 +44,9 @@ static inline int critical_repeat(work *w, impact_case c, variation vary, const 
         status = critical_search(&w->s, &one, &range, &rule, &curve, &a[k], w->message, sizeof w->message);
         if (status <= 0) return status;
         out->lost += a[k].lost;
+        out->each[k] = a[k].velocity;
     }
     for (k = 0; k < curve.runs; k++) out->cpu += curve.run[k].value[STUDY_CPU];
-    out->first = a[0].velocity;
     out->spread = critical_summary(a, times);
     return 1;
 }
@@ -144,18 +146,49 @@ static inline int critical_row(work *w, mpm_io_csv *t, const critical_setting *g
     say(w, "| %g | %s | %s, %g x %g | %d | %.0f | ", sizes[size], rule_name, g->name, c.substrate_diameter,
         c.substrate_height, g->times[size], said_critical[size]);
     say_spread(w, &out->spread, range.high);
-    say(w, " | %s | %s | %s | %d | %.0f |\n", difference, velocity_text(out->first, range.high, first, sizeof first),
+    say(w, " | %s | %s | %s | %d | %.0f |\n", difference, velocity_text(out->each[0], range.high, first, sizeof first),
         measure_text(out->spread.middle.pbcp, pbcp, sizeof pbcp), out->lost, out->cpu);
     return 1;
 }
 
-/* Critical velocities over size: by setting, source A's, the experiment. */
 typedef struct critical_line {
-    mpm_real x[SIZES], y[SIZES];
+    mpm_real x[REPEATS], y[REPEATS];
     size_t count;
-    const char *name;
+    char name[60];
 } critical_line;
 
+static inline void critical_point(critical_line *l, double x, double v)
+{
+    if (!(v < HUGE_VAL)) return;
+    l->x[l->count] = (mpm_real)x;
+    l->y[l->count++] = (mpm_real)v;
+}
+
+/* Critical velocity over the position of the grid, a curve per size. */
+static inline int position_plot(work *w, const critical_line *size)
+{
+    mpm_io_curve line[SIZES];
+    mpm_io_plot_desc d = mpm_io_plot_desc_default();
+    char path[MPM_IO_PATH];
+    int k;
+    memset(line, 0, sizeof line);
+    for (k = 0; k < SIZES; k++) {
+        line[k].x = size[k].x;
+        line[k].y = size[k].y;
+        line[k].count = size[k].count;
+        line[k].mark = MPM_IO_CURVE;
+        line[k].color = k;
+        line[k].name = size[k].name;
+    }
+    d.curves = line;
+    d.curve_count = SIZES;
+    d.title = "critical velocity over the position of the grid";
+    d.x_label = "height of a grid plane over the interface, cells";
+    d.y_label = "m/s";
+    return study_plots(data_file(w, "position.png", path, sizeof path), &d, 1, 1, "A-crit", &w->fault) || failed(w);
+}
+
+/* Critical velocities over size: by setting, source A's, the experiment. */
 static inline int critical_plot(work *w, const critical_line *ours, int count)
 {
     static const mpm_real two_sizes[2] = {14, 30}, measured[2] = {810, 770};
@@ -187,25 +220,30 @@ static inline int critical_plot(work *w, const critical_line *ours, int count)
            failed(w);
 }
 
-static inline int critical_rows(work *w, mpm_io_csv *t, critical_line *line, int *lines)
+/* The table, and the curves of both pictures: by setting over size, and of the first setting by size over the
+   position of the grid. As study_need. */
+static inline int critical_rows(work *w, mpm_io_csv *t, critical_line *setting, int *count, critical_line *size)
 {
     critical_outcome out;
-    int g, r, k, status;
-    *lines = 0;
+    int g, r, k, i, status;
+    *count = 0;
     for (g = 0; g < SETTINGS; g++) {
-        critical_line *ours = &line[*lines];
         if (!(settings[g].budgets & 1 << w->budget)) continue;
-        ours->count = 0;
-        ours->name = settings[g].name;
+        setting[*count].count = 0;
+        snprintf(setting[*count].name, sizeof setting[*count].name, "here, %s", settings[g].name);
         for (r = 0; r < 2; r++)
             for (k = 0; k < SIZES; k++) {
                 if (settings[g].times[k] == 0) continue;
                 if ((status = critical_row(w, t, &settings[g], k, rule_names[r], &out)) <= 0) return status;
-                if (r > 0 || !(out.spread.median < HUGE_VAL)) continue;
-                ours->x[ours->count] = (mpm_real)sizes[k];
-                ours->y[ours->count++] = (mpm_real)out.spread.median;
+                if (r > 0) continue;
+                critical_point(&setting[*count], sizes[k], out.spread.median);
+                if (*count > 0) continue;
+                size[k].count = 0;
+                snprintf(size[k].name, sizeof size[k].name, "%g um", sizes[k]);
+                for (i = 0; i < settings[g].times[k]; i++)
+                    critical_point(&size[k], (double)i / settings[g].times[k], out.each[i]);
             }
-        ++*lines;
+        ++*count;
     }
     return 1;
 }
@@ -213,10 +251,10 @@ static inline int critical_rows(work *w, mpm_io_csv *t, critical_line *line, int
 static inline int critical(work *w)
 {
     const critical_range range = critical_budget(w);
-    critical_line line[SETTINGS];
+    static critical_line setting[SETTINGS], size[SIZES];
     char path[MPM_IO_PATH];
     mpm_io_csv t;
-    int lines, k, status;
+    int count, k, status;
     w->s.early = 1;
     mpm_io_csv_begin(&t, data_file(w, "critical_velocity.csv", path, sizeof path),
                      "diameter_um,critical_velocity_m_s,lowest_m_s,highest_m_s,offsets,pbcp_percent,v_rest_m_s,cell_um,"
@@ -233,19 +271,20 @@ static inline int critical(work *w)
            "| um | rule | cell/spacing, substrate, um | positions | source A | here | lowest - highest | difference "
            "| on the plane | PBCP, %% | not above | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
         range.low, range.high, range.step);
-    status = critical_rows(w, &t, line, &lines);
+    status = critical_rows(w, &t, setting, &count, size);
     if (status <= 0) {
         mpm_io_csv_drop(&t);
         return status;
     }
-    say(w, "\n![Critical velocity](data/critical_velocity.png)\n\nFor comparison, formulas fitted to many metals "
-           "(Assadi et al.): 2003, without size, %.0f m/s; 2011, for", mpm_critical_velocity_2003(2.7, 660, 110, 20));
+    say(w, "\n![Critical velocity](data/critical_velocity.png) ![By position](data/position.png)\n\nFor "
+           "comparison, formulas fitted to many metals (Assadi et al.): 2003, without size, %.0f m/s; 2011, for", mpm_critical_velocity_2003(2.7, 660, 110, 20));
     for (k = 0; k < SIZES; k++)
         say(w, "%s %g um %.0f", k ? "," : "", sizes[k],
             mpm_critical_velocity_2011(sizes[k], 900, 933, 293, 110e6, 2700));
     say(w, " m/s (tensile strength 110 MPa, 20 C).\n\n");
     if (mpm_io_csv_end(&t, &w->fault) < 0) return failed(w);
-    return critical_plot(w, line, lines);
+    status = critical_plot(w, setting, count);
+    return status > 0 ? position_plot(w, size) : status;
 }
 
 /* ---- where the scatter comes from ------------------------------------------------------------ */

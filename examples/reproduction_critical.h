@@ -277,7 +277,8 @@ static inline int critical(work *w)
         return status;
     }
     say(w, "\n![Critical velocity](data/critical_velocity.png) ![By position](data/position.png)\n\nFor "
-           "comparison, formulas fitted to many metals (Assadi et al.): 2003, without size, %.0f m/s; 2011, for", mpm_critical_velocity_2003(2.7, 660, 110, 20));
+           "comparison, formulas fitted to many metals (Assadi et al.): 2003, without size, %.0f m/s; 2011, for",
+        mpm_critical_velocity_2003(2.7, 660, 110, 20));
     for (k = 0; k < SIZES; k++)
         say(w, "%s %g um %.0f", k ? "," : "", sizes[k],
             mpm_critical_velocity_2011(sizes[k], 900, 933, 293, 110e6, 2700));

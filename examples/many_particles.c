@@ -14,7 +14,7 @@ int main(int argc, char **argv)
     option o[IMPACT_OPTIONS];
     char message[300];
     int n, parsed;
-    q = particles_default("full", "many-out");
+    q = particles_default("full", "build/many_particles-out");
     q.count = 10;
     q.base.substrate_diameter = q.base.time = 0;
     n = particles_options(&q, o);
@@ -23,10 +23,10 @@ int main(int argc, char **argv)
     option_add(o, &n, "height", OPTION_REAL, &height, "of that region, um; 0: particles fill a fifth of it");
     option_add(o, &n, "seed", OPTION_LONG, &seed, "of the places");
     parsed = options_parse(argc, argv,
-                           "Particles at random places and heights. --substrate-diameter 0: spread and one diameter;\n"
+                           "Particles at random places and heights. --substrate-diameter 0: spread and one particle;\n"
                            "--time 0: the fall from the full height and 40 ns. Writes particles.csv, pairs.csv,\n"
                            "summary.json, particles.pvd (ParaView) and frames; run again with the same options after\n"
-                           "an interruption, it goes on.",
+                           "an interruption, it goes on; a finished scene is not repeated: delete the folder for that.",
                            o, n);
     if (parsed) return parsed < 0;
     if (!case_wants(q.count >= 1 && q.count <= PARTICLES, "count", (double)q.count, "must be 1 .. 500", message,
@@ -38,5 +38,5 @@ int main(int argc, char **argv)
         return !complain(message);
     if (!(height > 0)) height = particles_height(&q, spread);
     if (!particles_place(&q, spread, height, seed, message, sizeof message)) return !complain(message);
-    return particles_main(&q, o, n);
+    return particles_done(&q) ? 0 : particles_main(&q, o, n);
 }

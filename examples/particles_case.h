@@ -47,24 +47,32 @@ static inline double particles_height(const particles_case *q, double spread)
     return (double)q->count * d * d * d / 6 / 0.2 / (spread * spread / 4);
 }
 
-/* Centres in a cylinder over the substrate, at least a diameter and a cell apart, the lowest on the
-   substrate. Sets the substrate's width (spread and a diameter) and the time (the fall and 40 ns) where they
-   are 0. Returns 1, or 0 with a message. */
+/* The largest extent of a particle, um. */
+static inline double particles_extent(const particles_case *q)
+{
+    return 2 * fmax(impact_half_width(&q->base), impact_half_height(&q->base));
+}
+
+/* Centres in a cylinder over the substrate, at least the largest extent of a particle and a cell apart, the lowest
+   on the substrate; oblique ones start aside, so that they land where they would without the angle. Sets the
+   substrate's width (spread and a particle) and the time (the fall and 40 ns) where they are 0. Returns 1, or 0
+   with a message. Test: 63_particles. */
 static inline int particles_place(particles_case *q, double spread, double height, long seed, char *message, size_t n)
 {
-    const double apart = q->base.diameter + q->base.cell, pi = 3.14159265358979323846;
+    const double apart = particles_extent(q) + q->base.cell, pi = 3.14159265358979323846;
+    const double tilt = q->base.angle * pi / 180, down = q->base.velocity * cos(tilt), drift = tan(tilt);
     uint64_t state = (uint64_t)seed;
     double least = HUGE_VAL;
     long k, other, tries = 0;
-    if (!(fabs(q->base.substrate_diameter) > 0)) q->base.substrate_diameter = spread + q->base.diameter;
-    if (!(fabs(q->base.time) > 0)) q->base.time = 1e3 * height / q->base.velocity + 40;
+    if (!(fabs(q->base.substrate_diameter) > 0)) q->base.substrate_diameter = spread + 2 * impact_half_width(&q->base);
+    if (!(fabs(q->base.time) > 0)) q->base.time = 1e3 * height / down + 40;
     if (!impact_check(&q->base, message, n)) return 0;
     for (k = 0; k < q->count; k++) {
         double *x = q->center[k], r, phi, d2 = HUGE_VAL;
         do {
             if (tries++ > 200000) {
-                snprintf(message, n, "--count %ld: no room for so many a diameter and a cell (%g um) apart; larger "
-                         "--spread or --height, or smaller --cell", q->count, apart);
+                snprintf(message, n, "--count %ld: no room for so many at %g um (particle and cell) from centre to "
+                         "centre; larger --spread or --height, or smaller --cell", q->count, apart);
                 return 0;
             }
             r = spread / 2 * sqrt(particles_draw(&state));
@@ -72,6 +80,7 @@ static inline int particles_place(particles_case *q, double spread, double heigh
             x[0] = r * cos(phi);
             x[1] = r * sin(phi);
             x[2] = height * particles_draw(&state);
+            x[0] -= drift * x[2];
             for (other = 0, d2 = HUGE_VAL; other < k; other++) {
                 const double *y = q->center[other];
                 const double dx = x[0] - y[0], dy = x[1] - y[1], dz = x[2] - y[2];
@@ -80,7 +89,10 @@ static inline int particles_place(particles_case *q, double spread, double heigh
         } while (d2 < apart * apart);
         least = fmin(least, x[2]);
     }
-    for (k = 0; k < q->count; k++) q->center[k][2] += q->base.diameter / 2 - least;
+    for (k = 0; k < q->count; k++) {
+        q->center[k][0] += drift * least;
+        q->center[k][2] += impact_half_height(&q->base) - least;
+    }
     return 1;
 }
 
@@ -115,12 +127,13 @@ static inline int particles_begin(impact *s, const particles_case *q, char *mess
                     "makes more than 1e9 points", message, n))
         return 0;
     for (k = 0; k < q->count; k++) {
-        const double *x = q->center[k], aside = fmax(fabs(x[0]), fabs(x[1])), reach = aside + q->base.diameter / 2;
+        const double *x = q->center[k], aside = fmax(fabs(x[0]), fabs(x[1]));
+        const double reach = aside + impact_half_width(&q->base);
         if (!case_wants(!strcmp(q->base.geometry, "3d") || !(aside > 0), "offset", aside,
                         "beside the axis: needs geometry 3d", message, n))
             return 0;
         room.substrate_diameter = fmax(room.substrate_diameter, 2 * reach);
-        room.gap = fmax(room.gap, x[2] - q->base.diameter / 2);
+        room.gap = fmax(room.gap, x[2] - impact_half_height(&q->base));
     }
     d = impact_grid(&room);
     d.user_fields = 1; /* whom a point bonded to */
@@ -222,7 +235,8 @@ static inline void particles_report(const impact *s, const particles_case *q, pa
 static inline int particles_frame(const impact *s, particles_case *q)
 {
     const mpm_points *p = &s->world.points;
-    double edge = q->base.substrate_diameter / 2 + q->base.diameter / 2, top = q->base.diameter;
+    const double width = 2 * impact_half_width(&q->base), high = impact_half_height(&q->base);
+    double edge = q->base.substrate_diameter / 2 + width / 2, top = 2 * high;
     int32_t *partner = (int32_t *)malloc((size_t)p->count * sizeof *partner), i;
     output_picture picture;
     mpm_io_field field;
@@ -232,8 +246,8 @@ static inline int particles_frame(const impact *s, particles_case *q)
     for (i = 0; i < p->count; i++) partner[i] = (int32_t)p->user[0][i] - 1;
     field = mpm_io_int32("bonded to", partner); /* the body; -1: none */
     for (k = 0; k < q->count; k++) {
-        edge = fmax(edge, fabs(q->center[k][0]) + q->base.diameter);
-        top = fmax(top, q->center[k][2] + q->base.diameter / 2);
+        edge = fmax(edge, fabs(q->center[k][0]) + width);
+        top = fmax(top, q->center[k][2] + high);
     }
     output_cuts(&q->out, &s->world, q->base.spacing, NULL, &picture);
     output_window(&picture, 1.05 * edge, -1.05 * q->base.substrate_height, 1.05 * top);
@@ -312,6 +326,7 @@ static inline int particles_summary(const impact *s, const particles_case *q, co
     int k;
     for (a = 0; a < q->count; a++) fates[r[a].fate]++;
     mpm_io_json_begin(&j, file_in(q->out.folder, "summary.json", path, sizeof path), &fault);
+    mpm_io_json_integer(&j, "mpm_digits", MPM_DIGITS); /* of the number type */
     mpm_io_json_integer(&j, "particles", q->count);
     for (k = 0; k < 5; k++) mpm_io_json_integer(&j, particle_fate_text[k], fates[k]);
     mpm_io_json_number(&j, "pbcp_percent", mpm_bond_measure_body(w, -1).pbcp);
@@ -342,7 +357,16 @@ static inline void particles_print(const particles_case *q, const particle_repor
            mpm_bond_measure_body(&s->world, -1).pbcp, q->out.folder, q->out.frames > 0 ? ", particles.pvd" : "");
 }
 
-/* Whether the folder holds this very scene, finished: the options in its summary, the centres in its table. */
+/* Whether a summary is of this version and number type; one that does not name the type is of double. */
+static inline int particles_same_build(const char *summary)
+{
+    const char *version = json_value(summary, "mpm_version"), *digits = json_value(summary, "mpm_digits");
+    return version && !strncmp(version, "\"" MPM_VERSION "\"", sizeof MPM_VERSION + 1) &&
+           (digits ? strtol(digits, NULL, 10) : 17) == MPM_DIGITS;
+}
+
+/* Whether the folder holds this very scene, finished: version, number type and options in its summary, the centres
+   in its table. */
 static inline int particles_finished(const particles_case *q)
 {
     static char text[200000];
@@ -356,7 +380,9 @@ static inline int particles_finished(const particles_case *q)
     option_drop(plain, &plain_n, "gap");
     text_in(file_in(q->out.folder, "summary.json", path, sizeof path), text, sizeof text);
     count = json_value(text, "particles");
-    if (!count || strtol(count, NULL, 10) != q->count || !options_match(text, o, plain, n)) return 0;
+    if (!count || strtol(count, NULL, 10) != q->count || !particles_same_build(text) ||
+        !options_match(text, o, plain, n))
+        return 0;
     text_in(file_in(q->out.folder, "particles.csv", path, sizeof path), text, sizeof text);
     row = strstr(text, "height_um\n"); /* ends the line of the names */
     for (k = 0; k < q->count; k++) {
@@ -367,6 +393,20 @@ static inline int particles_finished(const particles_case *q)
             if (*row != ',' || fabs((double)((mpm_real)strtod(row + 1, &row) - centre)) > 0) return 0;
         }
     }
+    return 1;
+}
+
+/* The same, with as many frames as wanted: then says so. Test: 63_particles. */
+static inline int particles_done(const particles_case *q)
+{
+    static char text[200000];
+    char path[MPM_IO_PATH];
+    const char *frames;
+    if (!particles_finished(q)) return 0;
+    text_in(file_in(q->out.folder, "summary.json", path, sizeof path), text, sizeof text);
+    frames = json_value(text, "frames");
+    if (q->out.frames > 0 && (!frames || strtol(frames, NULL, 10) != q->out.frames)) return 0;
+    printf("%s holds this scene, finished: delete the folder to run it again\n", q->out.folder);
     return 1;
 }
 

@@ -13,21 +13,22 @@ int main(int argc, char **argv)
     option o[IMPACT_OPTIONS];
     char message[200];
     int n, parsed;
-    q = particles_default("half", "two-out");
+    q = particles_default("half", "build/two_particles-out");
     n = particles_options(&q, o);
-    option_add(o, &n, "offset", OPTION_REAL, &offset, "of the second particle along x, um");
-    option_add(o, &n, "height", OPTION_REAL, &height, "of its centre over the substrate, um");
+    option_add(o, &n, "offset", OPTION_REAL, &offset, "of the second particle along x, at the start, um");
+    option_add(o, &n, "height", OPTION_REAL, &height, "of its centre over the substrate, at the start, um");
     parsed = options_parse(argc, argv, "Two particles, one after the other, on one spot or beside it.\n"
                            "Writes particles.csv, pairs.csv, summary.json, particles.pvd (ParaView) and frames;\n"
-                           "run again with the same options after an interruption, it goes on.", o, n);
+                           "run again with the same options after an interruption, it goes on; a finished scene\n"
+                           "is not repeated: delete the folder for that.", o, n);
     if (parsed) return parsed < 0;
     if (!particles_check(&q, message, sizeof message) ||
         !case_wants(fabs(offset) < 1e3, "offset", offset, "must be a length in um", message, sizeof message) ||
         !case_wants(height > 0 && height < 1e4, "height", height, "must be > 0 um", message, sizeof message))
         return !complain(message);
     q.count = 2;
-    q.center[0][2] = q.base.diameter / 2;
+    q.center[0][2] = impact_half_height(&q.base);
     q.center[1][0] = offset;
     q.center[1][2] = height;
-    return particles_main(&q, o, n);
+    return particles_done(&q) ? 0 : particles_main(&q, o, n);
 }

@@ -153,6 +153,21 @@ static void forget(const char *folder, const char *option_name)
     fclose(f);
 }
 
+/* Changes a text in the summary of a scene. */
+static void change(const char *folder, const char *from, const char *to)
+{
+    size_t n;
+    char *text = (char *)bytes_of(folder, "summary.json", &n), path[MPM_IO_PATH];
+    const char *at = text ? strstr(text, from) : NULL;
+    FILE *f = at ? fopen(file_in(folder, "summary.json", path, sizeof path), "wb") : NULL;
+    CHECK_TRUE(from, f != NULL);
+    if (!f) return;
+    fwrite(text, 1, (size_t)(at - text), f);
+    fputs(to, f);
+    fputs(at + strlen(from), f);
+    fclose(f);
+}
+
 /* Of the scene in FOLDER/whole. */
 static void finished(void)
 {
@@ -188,8 +203,94 @@ static void finished(void)
     q.base.bond_width = 0.5;
     CHECK_TRUE("... and no other value", !particles_finished(&q));
     q.base.bond_width = 0;
+    change(FOLDER "/whole", "\"" MPM_VERSION "\"", "\"" MPM_VERSION "0\"");
+    CHECK_TRUE("not of another version", !particles_finished(&q));
+    change(FOLDER "/whole", "\"" MPM_VERSION "0\"", "\"" MPM_VERSION "\"");
+    CHECK_TRUE("known again", particles_finished(&q));
+    change(FOLDER "/whole", MPM_DIGITS == 17 ? "\"mpm_digits\": 17" : "\"mpm_digits\": 9", "\"mpm_digits\": 12");
+    CHECK_TRUE("not of another number type", !particles_finished(&q));
+    forget(FOLDER "/whole", "\"mpm_digits\"");
+    CHECK_EQUAL("without the number type it is of double", particles_finished(&q), MPM_DIGITS == 17);
+    change(FOLDER "/whole", "\"particles\"", MPM_DIGITS == 17 ? "\"mpm_digits\": 17,\n  \"particles\""
+                                                            : "\"mpm_digits\": 9,\n  \"particles\"");
+    CHECK_TRUE("known again", particles_finished(&q));
     forget(FOLDER "/whole", "\"normal\"");
     CHECK_TRUE("... for a word too", !particles_finished(&q));
+}
+
+/* The programs do not repeat a finished scene, and do when the frames are others or the folder is gone. */
+static void repeated(void)
+{
+    static const struct {
+        const char *options;
+        int again;
+    } turn[] = {{"--frames 0", 1}, {"--frames 0", 0}, {"--frames 1", 1}, {"--frames 1", 0}, {"--frames 0", 0},
+                {"--frames 0 --velocity 801", 1}, {"--frames 0 --velocity 801 --seed 2", 1}};
+    char command[400];
+    int k;
+    for (k = 0; k < 7; k++) {
+        remove(FOLDER "/repeated/pairs.csv");
+        snprintf(command, sizeof command,
+                 "build/many_particles --count 2 --spread 20 --cell 2 --spacing 1 --substrate-height 6 --time 0.1 "
+                 "--quiet --out " FOLDER "/repeated %s >" FOLDER "/out 2>&1", turn[k].options);
+        CHECK_EQUAL(turn[k].options, system(command), 0);
+        CHECK_EQUAL("... is run", exists(FOLDER "/repeated", "pairs.csv"), turn[k].again);
+        CHECK_EQUAL("... or said to be finished", strstr(text_of(FOLDER "/out"), "delete the folder") != NULL,
+                    !turn[k].again);
+    }
+}
+
+/* Of many particles: the lowest on the substrate, none in another, all land in the region. */
+static void places(const char *shape, double aspect, double angle)
+{
+    const double tilt = angle * 3.14159265358979323846 / 180;
+    static particles_case q;
+    char message[300];
+    double closest = HUGE_VAL, farthest = 0, high;
+    long i, j, lowest = 0;
+    mpm_real low;
+    impact s;
+    q = particles_default("full", FOLDER "/places");
+    q.count = 10;
+    q.base.cell = 2;
+    q.base.spacing = 1;
+    q.base.shape = shape;
+    q.base.aspect = aspect;
+    q.base.angle = angle;
+    q.base.substrate_diameter = q.base.time = 0;
+    CHECK_EQUAL(shape, particles_place(&q, 60, 40, 1, message, sizeof message), 1);
+    high = impact_half_height(&q.base);
+    for (i = 0; i < q.count; i++) {
+        const double *x = q.center[i];
+        if (x[2] < q.center[lowest][2]) lowest = i;
+        for (j = 0; j < i; j++) {
+            const double *y = q.center[j];
+            closest = fmin(closest, hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]));
+        }
+        farthest = fmax(farthest, hypot(x[0] + tan(tilt) * (x[2] - high), x[1]));
+    }
+    CHECK_NEAR("the lowest touches the substrate", q.center[lowest][2], high, 1e-12);
+    CHECK_TRUE("none is within a particle and a cell of another",
+               closest >= 2 * fmax(impact_half_width(&q.base), high) + q.base.cell - 1e-12);
+    CHECK_TRUE("all land in the region", farthest <= 30 + 1e-12);
+    CHECK_RELATIVE("the time to fall, and 40 ns", q.base.time, 1e3 * 40 / (810 * cos(tilt)) + 40, 1e-12);
+    CHECK_EQUAL("the scene", particles_begin(&s, &q, message, sizeof message), 1);
+    low = mpm_body_totals(&s.world, (int32_t)lowest).low[2];
+    CHECK_NEAR("... begins on the face, up to the lattice", low, 0.75 * q.base.spacing, 0.75 * q.base.spacing);
+    mpm_free(&s.world);
+}
+
+/* Of two_particles: the first touches the substrate whatever its shape. */
+static void first_place(const char *options, double height)
+{
+    char command[400];
+    const char *row;
+    snprintf(command, sizeof command,
+             "rm -rf " FOLDER "/first && build/two_particles --cell 2 --spacing 1 --substrate-height 6 --time 0.05 "
+             "--quiet --frames 0 --height 40 --out " FOLDER "/first %s >" FOLDER "/out 2>&1", options);
+    CHECK_EQUAL(options, system(command), 0);
+    row = strstr(text_of(FOLDER "/first/particles.csv"), "\n0,0,0,");
+    CHECK_NEAR("... touches the substrate", row ? strtod(row + 7, NULL) : -1, height, 1e-5);
 }
 
 /* The last field of the last frame: the points that name a partner are those in pairs.csv. */
@@ -234,6 +335,14 @@ int main(void)
     partners();
     interrupted("logistic", 1);
     finished();
+    repeated();
+    places("sphere", 1, 0);
+    places("ellipsoid", 0.7, 0);
+    places("ellipsoid", 2, 0);
+    places("sphere", 1, 30);
+    first_place("--shape sphere", 7);
+    first_place("--shape ellipsoid --aspect 0.7", 7 / cbrt(0.7) * 0.7);
+    first_place("--shape ellipsoid --aspect 2", 7 / cbrt(2.0) * 2);
     afresh();
     refused("many_particles --cell 1e9", "--cell 1000000000");
     refused("many_particles --cell 100 --spread 20", "smaller --cell");

@@ -153,6 +153,10 @@ static int check(const calibration *q, char *m, size_t n)
                      "columns", (double)q->columns, "makes more than 4000 pairs", m, n) &&
           case_wants(q->stays > 0, "stays", q->stays, "must be > 0 m/s", m, n)))
         return 0;
+    if (strcmp(q->base.bond, "energy")) {
+        snprintf(m, n, "--bond %s: the sweep is over G_c and Gdot_c, which only --bond energy has", q->base.bond);
+        return 0;
+    }
     for (k = 0; k < 2; k++)
         if (!case_wants(q->pbcp[k] >= 0, k ? "pbcp-2" : "pbcp-1", q->pbcp[k], "must be >= 0 %", m, n) ||
             !case_wants(q->restitution[k] >= 0, k ? "restitution-2" : "restitution-1", q->restitution[k],
@@ -227,9 +231,7 @@ int main(int argc, char **argv)
         s.planned = 1;
         status = study_need(&s, &c, value, message, sizeof message);
         study_progress_end(&s);
-        return status > 0 ? 0 : !complain(message);
-    }
-    if (!collecting) {
+    } else if (!collecting) {
         status = calibration_run(&q, &s, message, sizeof message);
         study_progress_end(&s);
     }
@@ -238,5 +240,6 @@ int main(int argc, char **argv)
         printf("stopped after %ld new runs; run again to go on\n", s.fresh);
         return 3;
     }
+    if (task >= 0) return 0;
     return collect(&q, &s, o, n, message, sizeof message) ? 0 : !complain(message);
 }

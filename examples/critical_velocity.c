@@ -1,4 +1,4 @@
-/* critical_velocity - the lowest velocity at which a particle bonds (source A, 5.2.1).
+/* critical_velocity - the lowest velocity at which a particle bonds (source A, 5.2.2, Table 5.4).
 
    Runs a range of impact velocities, halves the gap under the lowest one that bonds, and does so at
    several positions of the grid, since the answer of this method depends on it. Axisymmetric by default:
@@ -92,7 +92,8 @@ static int write_summary(const request *q, const critical_answer *a, const criti
     int k;
     snprintf(path, sizeof path, "%s/summary.json", q->folder);
     mpm_io_json_begin(&j, path, fault);
-    mpm_io_json_number(&j, "critical_velocity_m_s", s->median); /* null: nothing bonded */
+    /* null: nothing bonded at half of the positions or more */
+    mpm_io_json_number(&j, "critical_velocity_m_s", s->median);
     mpm_io_json_number(&j, "not_bonded_below_m_s", s->middle.below);
     mpm_io_json_number(&j, "lowest_m_s", s->lowest);
     mpm_io_json_number(&j, "highest_m_s", s->highest);
@@ -118,8 +119,17 @@ static int write_summary(const request *q, const critical_answer *a, const criti
     return mpm_io_json_end(&j, fault) >= 0;
 }
 
+/* A velocity, or up to which nothing bonded. */
+static const char *velocity_text(double velocity, const critical_range *range, char *text, size_t n)
+{
+    if (velocity < HUGE_VAL) snprintf(text, n, "%.4g m/s", velocity);
+    else snprintf(text, n, "none up to %g m/s", range->low + (critical_scans(range) - 1) * range->scan);
+    return text;
+}
+
 static void print_answers(const impact_case *c, const request *q, const critical_answer *a, const critical_spread *s)
 {
+    char text[3][60];
     int k;
     printf("\n  %s, %g um, rule %s; lowest velocity that bonds\n\n", c->material, c->diameter, q->rule.name);
     printf("  grid offset um   critical m/s   not below   PBCP %%   rebound m/s   not bonded above\n");
@@ -128,10 +138,12 @@ static void print_answers(const impact_case *c, const request *q, const critical
             printf("  %14.4g   %12.4g   %9.4g   %6.2f   %11.3f   %16d\n", a[k].offset, a[k].velocity, a[k].below,
                    a[k].pbcp, a[k].v_rest, a[k].lost);
         else
-            printf("  %14.4g   none up to %g\n", a[k].offset, q->range.high);
+            printf("  %14.4g   %s\n", a[k].offset, velocity_text(HUGE_VAL, &q->range, text[0], sizeof text[0]));
     }
-    printf("\n  median %.4g m/s, lowest %.4g, highest %.4g; %s/curve.csv, curve.png, summary.json\n", s->median,
-           s->lowest, s->highest, q->folder);
+    printf("\n  median %s, lowest %s, highest %s; %s/curve.csv, curve.png, summary.json\n",
+           velocity_text(s->median, &q->range, text[0], sizeof text[0]),
+           velocity_text(s->lowest, &q->range, text[1], sizeof text[1]),
+           velocity_text(s->highest, &q->range, text[2], sizeof text[2]), q->folder);
 }
 
 /* Refuses what makes no search. */
@@ -161,7 +173,7 @@ int main(int argc, char **argv)
     critical_answer answer[OFFSETS];
     critical_spread spread;
     impact_case c = study_case_default();
-    study st = study_of("build/critical");
+    study st = study_of("build/critical_velocity-out");
     request q;
     option o[IMPACT_OPTIONS];
     char message[400];
@@ -177,8 +189,9 @@ int main(int argc, char **argv)
     option_drop(o, &n, "grid-offset"); /* by --offsets */
     option_add(o, &n, "substrate", OPTION_TEXT, &q.substrate, "thesis|large: source A's sizes, or 5 x 2.5 diameters");
     option_add(o, &n, "rule", OPTION_TEXT, &q.rule.name, "thesis|stays: what counts as bonded");
-    option_add(o, &n, "pbcp", OPTION_REAL, &q.rule.pbcp, "rule thesis: least PBCP, %; 0: 5, at 14 um 4.8");
-    option_add(o, &n, "v-rest", OPTION_REAL, &q.rule.v_rest, "rule thesis: highest rebound, m/s; 0: 0.6, at 14 um 0.9");
+    option_add(o, &n, "pbcp", OPTION_REAL, &q.rule.pbcp, "rule thesis: least PBCP, %; 0: 5, up to 14 um 4.8");
+    option_add(o, &n, "v-rest", OPTION_REAL, &q.rule.v_rest,
+               "rule thesis: highest rebound, m/s; 0: 0.6, up to 14 um 0.9");
     option_add(o, &n, "stays", OPTION_REAL, &q.rule.stays, "rule stays: the late mean velocity is below, m/s");
     option_add(o, &n, "low", OPTION_REAL, &q.range.low, "lowest velocity, m/s");
     option_add(o, &n, "high", OPTION_REAL, &q.range.high, "highest velocity, m/s");
@@ -189,8 +202,9 @@ int main(int argc, char **argv)
     option_add(o, &n, "whole-time", OPTION_FLAG, &whole, "do not end a run early when the particle has left");
     option_add(o, &n, "out", OPTION_TEXT, &q.folder, "output folder");
     option_add(o, &n, "quiet", OPTION_FLAG, &st.quiet, "no progress line, no table");
-    parsed = options_parse(argc, argv, "The lowest impact velocity that bonds. Writes curve.csv, curve.png and "
-                           "summary.json\ninto the output folder; run again after an interruption, it goes on.", o, n);
+    parsed = options_parse(argc, argv, "The lowest impact velocity that bonds (source A, 5.2.2). Writes curve.csv,\n"
+                           "curve.png and summary.json into the output folder; run again after an interruption,\n"
+                           "it goes on.", o, n);
     if (parsed) return parsed < 0;
     study_complete(&c, q.substrate);
     if (!check(&q, &c, message, sizeof message)) return !complain(message);

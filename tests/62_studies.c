@@ -91,6 +91,11 @@ static void critical(void)
     snprintf(command, sizeof command, "%s --bond none", search);
     CHECK_EQUAL("without bonding", run(command), 0);
     CHECK_EQUAL("... no velocity bonds", number_in(summary, "offsets_without_bond"), 1);
+    CHECK_EQUAL("no velocity bonds; the range ends between two that are tested",
+                run("critical_velocity " COARSE "--time 2 --bond none --low 500 --high 680 --scan 100 --out " FOLDER
+                    "/none"), 0);
+    CHECK_TRUE("... says up to which", strstr(output, "median none up to 600 m/s") != NULL);
+    CHECK_TRUE("... and no infinity", !strstr(output, "inf"));
     refused("critical_velocity --rule often", "often");
     refused("critical_velocity --offsets 0", "offsets 0");
     refused("critical_velocity --low -5", "-5");
@@ -118,6 +123,9 @@ static void calibration(void)
     CHECK_EQUAL("... 15 of each size", tasks, 30);
     snprintf(command, sizeof command, "%s --collect", sweep);
     CHECK_EQUAL("nothing to collect yet", run(command), 1);
+    snprintf(command, sizeof command, "%s --task 0 --limit 0", sweep);
+    CHECK_EQUAL("one task, and no run allowed", run(command), 1);
+    CHECK_TRUE("... says so", !strncmp(output, "stopped after 0 new runs", 24));
     snprintf(command, sizeof command, "%s --task 0", sweep);
     CHECK_EQUAL("one task alone", run(command), 0);
     snprintf(command, sizeof command, "%s --list", sweep);
@@ -141,6 +149,8 @@ static void calibration(void)
     refused("calibrate --gc-low 0", "gc-low 0");
     refused("calibrate --gdot-high 10", "gdot-high 10");
     refused("calibrate --scale cubic", "cubic");
+    refused("calibrate --bond strain", "--bond strain: the sweep");
+    refused("calibrate --bond none", "--bond none: the sweep");
     refused("calibrate --task 9999", "9999");
     refused("calibrate --velocity-2 0", "velocity-2 0");
 }
@@ -164,6 +174,7 @@ static void particles(void)
     CHECK_EQUAL("... counted", number_in(FOLDER "/many/summary.json", "particles"), 3);
     CHECK_TRUE("... of which two arrive later", number_in(FOLDER "/many/summary.json", "arriving") >= 2);
     contents(FOLDER "/many/particles.csv", text, sizeof text);
+    system("rm -rf " FOLDER "/many");
     CHECK_EQUAL("the same seed", run(command), 0);
     contents(FOLDER "/many/particles.csv", output, sizeof output);
     CHECK_TRUE("... gives the same report", !strcmp(text, output));

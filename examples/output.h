@@ -14,7 +14,7 @@ typedef struct output {
     const char *folder, *name;  /* of the series: name.pvd */
     const char *length, *time;  /* units; a thousand of the unit of time are one of the world's */
     double rate;                /* a strain rate of the world, in 1/us */
-    long frames;                /* wanted, evenly in time, both ends included */
+    long frames;                /* wanted, evenly in time, both ends included; 1: of the end */
     int quiet;
 
     long frame;                 /* frames written */
@@ -39,7 +39,7 @@ static inline output output_of(const char *folder, const char *name, const char 
 static inline void output_options(output *o, option *options, int *n)
 {
     option_add(options, n, "frames", OPTION_LONG, &o->frames,
-               "pictures and ParaView files, evenly in time, both ends included");
+               "pictures and ParaView files, evenly in time, both ends included; 1: of the end alone");
     option_add(options, n, "out", OPTION_TEXT, &o->folder, "output folder");
     option_add(options, n, "quiet", OPTION_FLAG, &o->quiet, "no progress line, no table");
 }
@@ -79,10 +79,11 @@ static inline double output_cpu(output *o)
     return o->cpu;
 }
 
-/* Whether the next frame is due, of a run of that many steps. */
+/* Whether the next frame is due, of a run of that many steps. Test: 60_examples. */
 static inline int output_due(const output *o, const mpm_world *w, long steps)
 {
-    return o->frames > 0 && w->steps * (o->frames > 1 ? o->frames - 1 : 1) >= o->frame * steps;
+    if (o->frames <= 1) return o->frames == 1 && o->frame == 0 && w->steps >= steps;
+    return w->steps * (o->frames - 1) >= o->frame * steps;
 }
 
 /* ---- pictures ------------------------------------------------------------------------------ */

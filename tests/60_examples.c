@@ -83,6 +83,7 @@ static void metals(void)
 /* Frames: points for ParaView with all fields, their series, pictures. */
 static void frames(void)
 {
+    const char *series = "build/tests/frame/impact.pvd";
     static const char *const field[] = {"velocity (m/s)", "stress (MPa)", "density (g/cm3)", "temperature (K)",
                                         "plastic strain", "plastic strain rate (1/us)",
                                         "plastic energy density (MPa)", "bond D", "body", "id", "surface"};
@@ -97,6 +98,11 @@ static void frames(void)
     }
     CHECK_TRUE("pictures", !strncmp(text_of("build/tests/frames/frame_0001.png") + 1, "PNG", 3) &&
                                !strncmp(text_of("build/tests/frames/impact.png") + 1, "PNG", 3));
+    CHECK_TRUE("... from the start on", strstr(text_of("build/tests/frames/impact.pvd"), "timestep=\"0\"") != NULL);
+    CHECK_EQUAL("one frame", run("--time 1 --spacing 0.75 --frames 1 --out build/tests/frame"), 0);
+    CHECK_TRUE("the series names one",
+               strstr(text_of(series), "\"points_0000.vtu\"") && !strstr(text_of(series), "\"points_0001.vtu\""));
+    CHECK_TRUE("... of the end", !strstr(text_of(series), "timestep=\"0\""));
 }
 
 /* The scene without a program: volumes, areas, and a step that is the example's loop. */

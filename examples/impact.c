@@ -187,7 +187,7 @@ static int run(impact *s, const impact_case *c, output *o)
 int main(int argc, char **argv)
 {
     impact_case c = impact_case_default();
-    output o = output_of("impact-out", "impact", "um", "ns", 1);
+    output o = output_of("build/impact-out", "impact", "um", "ns", 1);
     option options[IMPACT_OPTIONS];
     int n = impact_options(&c, options);
     const char *about = "A metal particle hits a metal plate: material point method with bonding.\n"

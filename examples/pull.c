@@ -213,7 +213,7 @@ static int run(impact *s, const impact_case *ic, const pull_case *o, curve *c, c
 int main(int argc, char **argv)
 {
     impact_case c = impact_case_default();
-    pull_case o = {20, 20, 5, 4, 3, "pull-out", 0};
+    pull_case o = {20, 20, 5, 4, 3, "build/pull-out", 0};
     option options[IMPACT_OPTIONS];
     int n = impact_options(&c, options);
     char message[300];
@@ -240,12 +240,13 @@ int main(int argc, char **argv)
     }
     k.count = 0;
     k.room = (size_t)(o.distance / o.velocity * 1e3 / o.sample + o.ramp / o.sample) + 2;
-    k.separation = (mpm_real *)malloc(2 * k.room * sizeof *k.separation);
-    k.stress = k.separation + k.room;
-    ok = k.separation || complain("no memory");
+    k.separation = (mpm_real *)malloc(k.room * sizeof *k.separation);
+    k.stress = (mpm_real *)malloc(k.room * sizeof *k.stress);
+    ok = (k.separation && k.stress) || complain("no memory");
     ok = ok && (mpm_io_make_directory(o.folder, &fault) >= 0 || report(&fault, o.folder));
     ok = ok && run(&s, &c, &o, &k, options, n);
     free(k.separation);
+    free(k.stress);
     mpm_free(&s.world);
     return ok ? 0 : 1;
 }

@@ -51,7 +51,7 @@ static settings settings_default(void)
     o.box = 0.05;
     o.stand_off = 0.30;
     o.seed = 1;
-    o.out = "spray-out";
+    o.out = "build/spray-out";
     o.restart = "";
     o.frames = 20;
     return o;

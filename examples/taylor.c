@@ -155,7 +155,7 @@ static int finish(const taylor *s, const taylor_case *c, output *o, const option
 int main(int argc, char **argv)
 {
     taylor_case c = taylor_case_default();
-    output o = output_of("taylor-out", "taylor", "mm", "us", 1e-3);
+    output o = output_of("build/taylor-out", "taylor", "mm", "us", 1e-3);
     option options[20] = {
         {"length", OPTION_REAL, &c.length, "mm"},
         {"diameter", OPTION_REAL, &c.diameter, "mm"},

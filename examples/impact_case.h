@@ -330,7 +330,8 @@ typedef struct impact_result {
     double substrate_drift;                            /* mean v_z of the substrate */
     double relative, filtered_relative;                /* rebound less that drift */
     double tangential;                                 /* mean v_x of the particle */
-    double flattening;                                 /* 1 - height / height at the start */
+    double flattening;                                 /* 1 - height / height at the start: what mpm_splat calls
+                                                          compression; its flattening is of the width */
     double crater;                                     /* see mpm_splat */
     double contact_area, bonded_area;                  /* of the whole particle: see mpm_bond_measure */
     double ejected_fraction;                           /* of the particle's mass, faster than 60 m/s */

@@ -246,9 +246,8 @@ static void places(const char *shape, double aspect, double angle)
     const double tilt = angle * 3.14159265358979323846 / 180;
     static particles_case q;
     char message[300];
-    double closest = HUGE_VAL, farthest = 0, high;
+    double closest = HUGE_VAL, farthest = 0, high, low;
     long i, j, lowest = 0;
-    mpm_real low;
     impact s;
     q = particles_default("full", FOLDER "/places");
     q.count = 10;

@@ -422,14 +422,16 @@ static inline int regularisation(work *w)
     critical_range range = critical_budget(w);
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {0, 0};
     critical_outcome out;
-    char pbcp[40];
+    char number[40];
     int g, k, status;
     w->s.early = 1;
     w->s.planned = w->s.done + 2 * count * times * critical_cost(&range);
     say(w, "### With and without DCell\n\nCritical velocity of 14 um, rule \"thesis\", axisymmetric, %d positions of "
-           "the grid: the energy rule with the cell as its length (A 4.16), and with 1 um on every grid.\n\n"
-           "| cell/spacing, um | with DCell: median, m/s | lowest - highest | PBCP there, %% | 1 um: median, m/s | "
-           "lowest - highest | PBCP there, %% |\n|---|---|---|---|---|---|---|\n", times);
+           "the grid (\"on the plane\": the interface on a grid plane): the energy rule with the cell as its length "
+           "(A 4.16), and with 1 um on every grid.\n\n"
+           "| cell/spacing, um | with DCell: median, m/s | lowest - highest | on the plane | PBCP at the median, %% "
+           "| 1 um: median, m/s | lowest - highest | on the plane | PBCP at the median, %% |\n"
+           "|---|---|---|---|---|---|---|---|---|\n", times);
     for (g = 0; g < count; g++) {
         say(w, "| %.3g/%.3g", grids[g].cell, grids[g].spacing);
         for (k = 0; k < 2; k++) {
@@ -441,7 +443,8 @@ static inline int regularisation(work *w)
             if ((status = critical_repeat(w, c, VARY_GRID, "thesis", range, times, &out)) <= 0) return status;
             say(w, " | ");
             say_spread(w, &out.spread, range.high);
-            say(w, " | %s", measure_text(out.spread.middle.pbcp, pbcp, sizeof pbcp));
+            say(w, " | %s", velocity_text(out.each[0], range.high, number, sizeof number));
+            say(w, " | %s", measure_text(out.spread.middle.pbcp, number, sizeof number));
             low[k] = fmin(low[k], out.spread.median);
             high[k] = fmax(high[k], out.spread.median);
         }

@@ -529,7 +529,7 @@ static int ten_particles(work *w)
 
 typedef int (*part_fn)(work *w);
 
-#define PARTS "conv,dt,jet,substrate,crit,scatter,held,unit,length,pairs,cal,site,two,ten"
+#define PARTS "conv,dt,jet,substrate,crit,scatter,held,unit,length,pairs,points,cal,site,two,ten"
 
 /* Whether a list names parts only, or "none". */
 static int parts_known(work *w, const char *name, const char *list)
@@ -555,8 +555,8 @@ static int parts(work *w)
         part_fn run;
     } part[] = {{"conv", convergence},  {"dt", time_steps},       {"jet", jets},          {"substrate", substrates},
                 {"crit", critical},     {"scatter", scatter},     {"held", held_out},     {"unit", rate_unit},
-                {"length", regularisation}, {"pairs", other_pairs}, {"cal", calibrations}, {"site", sites},
-                {"two", two_particles}, {"ten", ten_particles}};
+                {"length", regularisation}, {"pairs", other_pairs}, {"points", points_touch}, {"cal", calibrations},
+                {"site", sites},        {"two", two_particles},   {"ten", ten_particles}};
     const int count = (int)(sizeof part / sizeof part[0]), budget = w->budget;
     int k, status;
     say(w,

@@ -493,6 +493,42 @@ static inline int other_pairs(work *w)
     return 1;
 }
 
+/* Contact where the points touch, with GIMP and logistic normals, and G_c 1503.74 with the Gdot_c that brings 14 um
+   near the experiment: what is left of the scatter, and the fall with size. */
+static inline int points_touch(work *w)
+{
+    static const double diameter[2] = {14, 30};
+    const int times[2] = {8, 4};
+    const critical_range range = critical_budget(w);
+    critical_outcome out;
+    char number[40];
+    int k, r, status;
+    w->s.early = 1;
+    w->s.planned = w->s.done + 12 * critical_cost(&range);
+    say(w, "### Contact where the points touch\n\nWith GIMP, logistic normals, G_c 1503.74 J/m2 and Gdot_c 1.35e5 J/(m2 "
+           "us); %s um, axisymmetric. Experiment: 810 m/s at 14 um, 770 at 30.\n\n"
+           "| um | rule | positions | median, m/s | lowest - highest | on the plane | PBCP, %% | not above | CPU s "
+           "|\n|---|---|---|---|---|---|---|---|---|\n", budget_grid(w));
+    for (k = 0; k < 2; k++)
+        for (r = 0; r < 2; r++) {
+            impact_case c = budget_case(w);
+            c.diameter = diameter[k];
+            c.functions = "gimp";
+            c.normal = "logistic";
+            c.separation = 1;
+            c.gdot = 1.35e5;
+            study_complete(&c, "thesis");
+            if ((status = critical_repeat(w, c, VARY_GRID, rule_names[r], range, times[k], &out)) <= 0) return status;
+            say(w, "| %g | %s | %d | ", diameter[k], rule_names[r], times[k]);
+            say_spread(w, &out.spread, range.high);
+            say(w, " | %s", velocity_text(out.each[0], range.high, number, sizeof number));
+            say(w, " | %s | %d | %.0f |\n", measure_text(out.spread.middle.pbcp, number, sizeof number), out.lost,
+                out.cpu);
+        }
+    say(w, "\n");
+    return 1;
+}
+
 /* ---- impacts that were not calibrated on ----------------------------------------------------- */
 
 static inline int held_out(work *w)

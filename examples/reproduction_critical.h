@@ -505,8 +505,8 @@ static inline int points_touch(work *w)
     int k, r, status;
     w->s.early = 1;
     w->s.planned = w->s.done + 12 * critical_cost(&range);
-    say(w, "### Contact where the points touch\n\nWith GIMP, logistic normals, G_c 1503.74 J/m2 and Gdot_c 1.35e5 J/(m2 "
-           "us); %s um, axisymmetric. Experiment: 810 m/s at 14 um, 770 at 30.\n\n"
+    say(w, "### Contact where the points touch\n\nWith GIMP, logistic normals, G_c 1503.74 J/m2 and Gdot_c 1.35e5 "
+           "J/(m2 us); %s um, axisymmetric. Experiment: 810 m/s at 14 um, 770 at 30.\n\n"
            "| um | rule | positions | median, m/s | lowest - highest | on the plane | PBCP, %% | not above | CPU s "
            "|\n|---|---|---|---|---|---|---|---|---|\n", budget_grid(w));
     for (k = 0; k < 2; k++)

@@ -3,22 +3,12 @@
 #define MPM_IMPLEMENTATION
 #include "mpm_ptw.h"
 #include "check.h"
+#include "files.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 static char out[20000], err[2000];
-
-static void slurp(const char *path, char *text, size_t n)
-{
-    FILE *f = fopen(path, "rb");
-    size_t got = 0;
-    if (f) {
-        got = fread(text, 1, n - 1, f);
-        fclose(f);
-    }
-    text[got] = 0;
-}
 
 static int run(const char *options)
 {
@@ -27,8 +17,8 @@ static int run(const char *options)
     snprintf(command, sizeof command, "build/material %s >build/tests/material.out 2>build/tests/material.err",
              options);
     status = system(command);
-    slurp("build/tests/material.out", out, sizeof out);
-    slurp("build/tests/material.err", err, sizeof err);
+    contents("build/tests/material.out", out, sizeof out);
+    contents("build/tests/material.err", err, sizeof err);
     return status;
 }
 
@@ -55,7 +45,7 @@ static void curve(void)
     CHECK_EQUAL("curve of cu jc",
                 run("--material cu --model jc --strain 0.5 --rate 1e4 --curve build/tests/curve.csv"), 0);
     isothermal = printed("flow_stress_MPa");
-    slurp("build/tests/curve.csv", text, sizeof text);
+    contents("build/tests/curve.csv", text, sizeof text);
     for (at = text; (at = strchr(at, '\n')) != NULL; at++) rows++;
     CHECK_EQUAL("header and 201 rows", rows, 202);
     at = text + strlen(text) - 1;

@@ -4,6 +4,7 @@
 #define MPM_IMPLEMENTATION
 #include "study.h"
 #include "check.h"
+#include "files.h"
 
 #define FOLDER "build/tests/studies"
 
@@ -11,19 +12,6 @@
 #define COARSE "--functions gimp --cell 2 --spacing 1 --substrate-diameter 24 --substrate-height 6 --margin 0.5 "
 
 static char output[20000];
-
-/* What a file holds, in `text`. Returns its length; 0 if there is none. */
-static size_t contents(const char *path, char *text, size_t room)
-{
-    FILE *f = fopen(path, "rb");
-    size_t n = 0;
-    if (f) {
-        n = fread(text, 1, room - 1, f);
-        fclose(f);
-    }
-    text[n] = 0;
-    return n;
-}
 
 /* Exit status of build/<command>: 0, or not. Its output is in `output`. */
 static int run(const char *command)
@@ -34,18 +22,6 @@ static int run(const char *command)
     status = system(line) != 0;
     contents(FOLDER ".out", output, sizeof output);
     return status;
-}
-
-/* The number behind "key": in a JSON file; -1e300 if there is none. */
-static double number_in(const char *path, const char *key)
-{
-    static char text[20000];
-    char quoted[64];
-    const char *at;
-    contents(path, text, sizeof text);
-    snprintf(quoted, sizeof quoted, "\"%s\":", key);
-    at = strstr(text, quoted);
-    return at ? strtod(at + strlen(quoted), NULL) : -1e300;
 }
 
 static int lines(const char *text)

@@ -6,17 +6,24 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* What a file holds, up to room - 1 bytes, in `text`. Returns its length; 0 if there is none. */
+static inline size_t contents(const char *path, char *text, size_t room)
+{
+    FILE *f = fopen(path, "rb");
+    size_t n = 0;
+    if (f) {
+        n = fread(text, 1, room - 1, f);
+        fclose(f);
+    }
+    text[n] = 0;
+    return n;
+}
+
 /* The text of a file, up to 20,000 bytes and until the next call; "" if there is none. */
 static inline const char *text_of(const char *path)
 {
     static char text[20000];
-    FILE *f = fopen(path, "rb");
-    size_t n = 0;
-    if (f) {
-        n = fread(text, 1, sizeof text - 1, f);
-        fclose(f);
-    }
-    text[n] = 0;
+    contents(path, text, sizeof text);
     return text;
 }
 

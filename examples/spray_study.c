@@ -200,7 +200,8 @@ static int need(study *st, const run_case *c)
     st->count++;
     if (!st->quiet) {
         double gone = difftime(time(NULL), st->started);
-        fprintf(stderr, "\rrun %d of %d, left %.0f s   ", st->done, st->planned, gone / st->done * (st->planned - st->done));
+        fprintf(stderr, "\rrun %d of %d, left %.0f s   ", st->done, st->planned,
+                gone / st->done * (st->planned - st->done));
     }
     return 0;
 }
@@ -299,7 +300,8 @@ static double of_range(const study *st, int range, int alpha, int value)
 
 static mpm_status write_table(const study *st, mpm_fault *fault)
 {
-    char path[MPM_IO_PATH], columns[1024] = "reading,speed_m_s,alpha,size_shape,release_low_m_s,release_high_m_s,seed,time_s";
+    char path[MPM_IO_PATH],
+         columns[1024] = "reading,speed_m_s,alpha,size_shape,release_low_m_s,release_high_m_s,seed,time_s";
     mpm_io_csv csv;
     mpm_status status;
     int k, n;
@@ -454,9 +456,11 @@ static int pictures(const study *st, mpm_fault *fault)
             bad = mpm_spray_init(&s, &d, NULL, 0) < 0 || run_to(&s, c.time);
             snprintf(title, sizeof title, "%g m/s, alpha %g", speeds[k], c.alpha);
             if (!bad && s.deposited > 0)
-                bad = spray_draw_deposit(&top, mpm_io_tile(&top, SPEEDS, 2, row * SPEEDS + k), &s, &columns, 20, title, fault) < 0;
+                bad = spray_draw_deposit(&top, mpm_io_tile(&top, SPEEDS, 2, row * SPEEDS + k), &s, &columns, 20,
+                                         title, fault) < 0;
             if (!bad && row)
-                bad = spray_draw_plume(&plume, mpm_io_tile(&plume, 1, SPEEDS, k), &s, &columns, speeds[k], title, fault) < 0;
+                bad = spray_draw_plume(&plume, mpm_io_tile(&plume, 1, SPEEDS, k), &s, &columns, speeds[k],
+                                       title, fault) < 0;
             mpm_spray_free(&s);
         }
     snprintf(path, sizeof path, "%s/spray_b8.png", st->data);
@@ -537,7 +541,8 @@ static int ordered(const study *st, int reading, int value, int sign)
 {
     int a, n = 0;
     for (a = 0; a < ALPHAS; a++) {
-        double v30 = of(st, reading, 0, a, value), v50 = of(st, reading, 1, a, value), v80 = of(st, reading, 2, a, value);
+        double v30 = of(st, reading, 0, a, value), v50 = of(st, reading, 1, a, value),
+               v80 = of(st, reading, 2, a, value);
         n += sign * (v50 - v30) >= 0 && sign * (v80 - v50) >= 0 && sign * (v80 - v30) > 0.01 * fabs(v30);
     }
     return n;
@@ -579,8 +584,8 @@ static char *words(const char *format, ...)
 /* "30.1 / 50.2 / 80.3": a value at the three speeds. */
 static char *three(const study *st, int reading, int alpha, int value, double scale)
 {
-    return words("%.3g / %.3g / %.3g", of(st, reading, 0, alpha, value) * scale, of(st, reading, 1, alpha, value) * scale,
-                 of(st, reading, 2, alpha, value) * scale);
+    return words("%.3g / %.3g / %.3g", of(st, reading, 0, alpha, value) * scale,
+                 of(st, reading, 1, alpha, value) * scale, of(st, reading, 2, alpha, value) * scale);
 }
 
 static void report_b7(FILE *f, const study *st)
@@ -632,9 +637,12 @@ static void report_b9(FILE *f, const study *st)
                 2 * (of(st, BOTH, k, 7, FRACTION) - of(st, BOTH, k, 5, FRACTION));
     row(f, "B-9", "deposit fraction rises fast below the threshold alpha and flattens above",
         words("gained from 2e3 to 2e4 %.3g / %.3g / %.3g, from 1e5 to 1e6 %.3g / %.3g / %.3g at 30 / 50 / 80 m/s",
-              of(st, BOTH, 0, 3, FRACTION) - of(st, BOTH, 0, 0, FRACTION), of(st, BOTH, 1, 3, FRACTION) - of(st, BOTH, 1, 0, FRACTION),
-              of(st, BOTH, 2, 3, FRACTION) - of(st, BOTH, 2, 0, FRACTION), of(st, BOTH, 0, 7, FRACTION) - of(st, BOTH, 0, 5, FRACTION),
-              of(st, BOTH, 1, 7, FRACTION) - of(st, BOTH, 1, 5, FRACTION), of(st, BOTH, 2, 7, FRACTION) - of(st, BOTH, 2, 5, FRACTION)),
+              of(st, BOTH, 0, 3, FRACTION) - of(st, BOTH, 0, 0, FRACTION),
+              of(st, BOTH, 1, 3, FRACTION) - of(st, BOTH, 1, 0, FRACTION),
+              of(st, BOTH, 2, 3, FRACTION) - of(st, BOTH, 2, 0, FRACTION),
+              of(st, BOTH, 0, 7, FRACTION) - of(st, BOTH, 0, 5, FRACTION),
+              of(st, BOTH, 1, 7, FRACTION) - of(st, BOTH, 1, 5, FRACTION),
+              of(st, BOTH, 2, 7, FRACTION) - of(st, BOTH, 2, 5, FRACTION)),
         verdict(flat, SPEEDS));
     for (a = 0; a < ALPHAS; a++) {
         near_mono += fabs(of_shape(st, 3, a, FRACTION) - of_shape(st, 4, a, FRACTION)) / ALPHAS;
@@ -645,18 +653,21 @@ static void report_b9(FILE *f, const study *st)
                      of(st, BOTH, 1, steepest + 1, RATE) - of(st, BOTH, 1, steepest, RATE)) steepest = a - 1;
     }
     row(f, "B-9", "narrower sizes behave more like a single size",
-        words("deposit fractions of n = 1 and 5 differ by %.3g on average, those of n = 5 and 10 by %.3g; collided at alpha "
-              "1e6: %.3g %% for n = 1, %.3g %% for 5, %.3g %% for 10", far_from_mono, near_mono,
-              100 * of_shape(st, 0, 7, COLLIDED), 100 * of_shape(st, 3, 7, COLLIDED), 100 * of_shape(st, 4, 7, COLLIDED)),
+        words("deposit fractions of n = 1 and 5 differ by %.3g on average, those of n = 5 and 10 by %.3g; collided at "
+              "alpha 1e6: %.3g %% for n = 1, %.3g %% for 5, %.3g %% for 10", far_from_mono, near_mono,
+              100 * of_shape(st, 0, 7, COLLIDED), 100 * of_shape(st, 3, 7, COLLIDED),
+              100 * of_shape(st, 4, 7, COLLIDED)),
         verdict(near_mono < far_from_mono, 1));
     row(f, "B-9", "more varied release velocities: more collisions, fewer deposited in a fixed time",
-        words("release 25 m/s against 0 to 50 m/s: collisions per particle %.3g against %.3g at alpha 1e6 (more at %d of %d "
-              "alphas), deposit fraction %.3g against %.3g (less at %d)", of_range(st, 0, 7, COLLISIONS), of_range(st, 2, 7, COLLISIONS),
-              more, ALPHAS, of_range(st, 0, 7, FRACTION), of_range(st, 2, 7, FRACTION), fewer),
+        words("release 25 m/s against 0 to 50 m/s: collisions per particle %.3g against %.3g at alpha 1e6 (more at "
+              "%d of %d alphas), deposit fraction %.3g against %.3g (less at %d)",
+              of_range(st, 0, 7, COLLISIONS), of_range(st, 2, 7, COLLISIONS), more, ALPHAS,
+              of_range(st, 0, 7, FRACTION), of_range(st, 2, 7, FRACTION), fewer),
         verdict((more == ALPHAS) + (fewer == ALPHAS), 2));
     row(f, "B-9", "the growth rate changes most in one range of alpha, the threshold",
-        words("late rate over feed at 50 m/s: %.3g, %.3g, %.3g, %.3g, %.3g, %.3g, %.3g, %.3g from 2e3 to 1e6; the largest "
-              "step is from %g to %g", of(st, BOTH, 1, 0, RATE), of(st, BOTH, 1, 1, RATE), of(st, BOTH, 1, 2, RATE),
+        words("late rate over feed at 50 m/s: %.3g, %.3g, %.3g, %.3g, %.3g, %.3g, %.3g, %.3g from 2e3 to 1e6; the "
+              "largest step is from %g to %g",
+              of(st, BOTH, 1, 0, RATE), of(st, BOTH, 1, 1, RATE), of(st, BOTH, 1, 2, RATE),
               of(st, BOTH, 1, 3, RATE), of(st, BOTH, 1, 4, RATE), of(st, BOTH, 1, 5, RATE), of(st, BOTH, 1, 6, RATE),
               of(st, BOTH, 1, 7, RATE), alphas[steepest], alphas[steepest + 1]),
         verdict(of(st, BOTH, 1, steepest + 1, RATE) - of(st, BOTH, 1, steepest, RATE) >
@@ -668,11 +679,11 @@ static int report(const study *st, const long_run *l, double once, double eightf
     FILE *f = fopen(st->report, "w");
     if (!f) return fprintf(stderr, "error: cannot write %s\n", st->report), -1;
     fprintf(f, "# The spray: source B beside ours\n\n"
-               "Made by `build/spray_study --budget %s` (mpm.h %s). Each run lasts %g s of spray; %d seed%s for the first "
-               "reading and for the release velocities, one elsewhere. The paper prints these results as figures, so trends "
-               "are compared; what its text leaves open is settled in [spray_model.md](spray_model.md). All runs: "
-               "`%s/spray_runs.csv`.\n\n", st->budget, MPM_VERSION, st->time, st->seeds,
-            st->seeds > 1 ? "s" : "", st->data);
+               "Made by `build/spray_study --budget %s` (mpm.h %s). Each run lasts %g s of spray; %d seed%s for the "
+               "first reading and for the release velocities, one elsewhere. The paper prints these results as "
+               "figures, so trends are compared; what its text leaves open is settled in "
+               "[spray_model.md](spray_model.md). All runs: `%s/spray_runs.csv`.\n\n",
+            st->budget, MPM_VERSION, st->time, st->seeds, st->seeds > 1 ? "s" : "", st->data);
     fprintf(f, "| id | the paper says | here | verdict |\n|---|---|---|---|\n");
     row(f, "B-6", "50 050 particles: the run completes; scatter around a dense core",
         words("%ld injected, %ld deposited, %.3g %% of them within the nozzle's radius, %.3g %% beyond twice that",
@@ -681,13 +692,15 @@ static int report(const study *st, const long_run *l, double once, double eightf
     report_b7(f, st);
     report_b8_b10(f, st);
     report_b9(f, st);
-    fprintf(f, "\n\"In part\" means: at half of the alphas or more, but not at every one. Pictures: [B-7](data/spray_b7.png), "
-               "[B-8](data/spray_b8.png), [B-9](data/spray_b9.png), [B-10](data/spray_b10.png).\n\n");
+    fprintf(f, "\n\"In part\" means: at half of the alphas or more, but not at every one. Pictures: "
+               "[B-7](data/spray_b7.png), [B-8](data/spray_b8.png), "
+               "[B-9](data/spray_b9.png), [B-10](data/spray_b10.png).\n\n");
     fprintf(f, "## Cost\n\n| what | asked | measured |\n|---|---|---|\n"
                "| the run of 50 050 particles, CPU s | < 120 | %.1f |\n| its memory, MB | < 100 | %.1f |\n"
                "| simulated particle-seconds per CPU second | >= 20 | %.1f |\n"
                "| iterations that did not converge | - | %ld |\n"
-               "| ns per particle-step, feed 1e5 /s | - | %.0f |\n| the same at feed 8e5 /s | < 1.4 times | %.0f, %.2f times |\n",
+               "| ns per particle-step, feed 1e5 /s | - | %.0f |\n"
+               "| the same at feed 8e5 /s | < 1.4 times | %.0f, %.2f times |\n",
             l->cpu, l->megabytes, l->per_second, (long)l->not_converged, once, eightfold, eightfold / once);
     return fclose(f) ? -1 : 0;
 }

@@ -80,7 +80,8 @@ static void spin(void)
         mpm_p2g(&w);
         for (i = 0; i < w.nodes; i++) {
             mpm_node *node = &w.node[i];
-            const int32_t ix = node->index % w.nodes_per_axis[0], iy = node->index / w.nodes_per_axis[0] % w.nodes_per_axis[1];
+            const int32_t ix = node->index % w.nodes_per_axis[0],
+                          iy = node->index / w.nodes_per_axis[0] % w.nodes_per_axis[1];
             const double x = -5.0 + ix, y = -5.0 + iy;
             node->velocity[0] = (mpm_real)(-omega * y);
             node->velocity[1] = (mpm_real)(omega * x);
@@ -250,7 +251,8 @@ static void three_bodies(mpm_contact_law law, const char *name)
     t1 = mpm_body_totals(&w, -1);
     snprintf(line, sizeof line, "three bodies, %s: they meet", name);
     CHECK_TRUE(line, meeting && n == 250);
-    for (k = 0; k < 3; k++) CHECK_NEAR("three bodies: momentum", (t1.momentum[k] - t0.momentum[k]) / scale, 0, 2000 * eps);
+    for (k = 0; k < 3; k++)
+        CHECK_NEAR("three bodies: momentum", (t1.momentum[k] - t0.momentum[k]) / scale, 0, 2000 * eps);
     for (k = 0; k < 3; k++)
         CHECK_NEAR("three bodies: the centre of mass moves with the momentum",
                    (moment(&w, k) - start[k] - t0.momentum[k] * (double)w.time) / (scale * (double)w.time), 0,

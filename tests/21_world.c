@@ -150,7 +150,8 @@ static void memory(void)
     for (n = 0; n < 50; n++) {
         CHECK_TRUE("memory: step", scene_step(&own, NULL, MPM_R(1e-5)) >= 0 && mpm_step(&given, MPM_R(1e-5)) >= 0);
     }
-    CHECK_EQUAL("memory: same bits", memcmp(own.points.v[2], given.points.v[2], (size_t)d.points * sizeof(mpm_real)), 0);
+    CHECK_EQUAL("memory: same bits",
+                memcmp(own.points.v[2], given.points.v[2], (size_t)d.points * sizeof(mpm_real)), 0);
     mpm_free(&own);
     mpm_free(&given);
     free(block);
@@ -199,8 +200,8 @@ static void impact_in(mpm_units u, double out[5], mpm_real *bits)
     mpm_bond bond = mpm_bond_default(&u);
     mpm_desc d = scene_grid(1.5 * um, 10, 10, 14, 0, 0, -9 * um);
     mpm_body_desc ball = scene_body(&m, mpm_sphere(0, 0, (mpm_real)(3 * um), (mpm_real)(3 * um)), 0.75 * um, -900 * ms);
-    mpm_body_desc slab = scene_body(&m, mpm_cylinder(0, 0, (mpm_real)(-6 * um), (mpm_real)(7.5 * um), (mpm_real)(6 * um)),
-                                    0.75 * um, 0);
+    mpm_body_desc slab = scene_body(&m, mpm_cylinder(0, 0, (mpm_real)(-6 * um), (mpm_real)(7.5 * um),
+                                                     (mpm_real)(6 * um)), 0.75 * um, 0);
     const double dt = 8e-12 / u.time;
     mpm_world w;
     mpm_totals t;

@@ -155,8 +155,10 @@ static void mirrors(mpm_shape_function shape, const char *name)
     snprintf(line, sizeof line, "quarter and whole, %s: kinetic energy", name);
     CHECK_RELATIVE(line, kinetic[0], kinetic[1], 1e6 * eps * (sizeof(mpm_real) == 4 ? 0.1 : 1));
     CHECK_NEAR("quarter: momentum with what the mirrors gave, all axes", lost, 0, 1e4 * eps);
-    CHECK_RELATIVE("quarter and whole: internal energy", internal[0], internal[1], 1e6 * eps * (sizeof(mpm_real) == 4 ? 0.1 : 1));
-    CHECK_RELATIVE("quarter and whole: radius of the ball", high[0], high[1], 1e6 * eps * (sizeof(mpm_real) == 4 ? 0.1 : 1));
+    CHECK_RELATIVE("quarter and whole: internal energy", internal[0], internal[1],
+                   1e6 * eps * (sizeof(mpm_real) == 4 ? 0.1 : 1));
+    CHECK_RELATIVE("quarter and whole: radius of the ball", high[0], high[1],
+                   1e6 * eps * (sizeof(mpm_real) == 4 ? 0.1 : 1));
 }
 
 /* Axisymmetry: a velocity a r strains hoop and radius alike, and uniform pressure leaves the nodes
@@ -183,12 +185,15 @@ static void rings(mpm_shape_function shape, const char *name)
     mpm_p2g(&w);
     mpm_forces(&w, 1);
     for (i = 0; i < w.nodes; i++) {
-        const int32_t ir = w.node[i].index % w.nodes_per_axis[0] - w.ghost, iz = w.node[i].index / w.nodes_per_axis[0] - w.ghost;
+        const int32_t ir = w.node[i].index % w.nodes_per_axis[0] - w.ghost,
+                      iz = w.node[i].index / w.nodes_per_axis[0] - w.ghost;
         w.node[i].velocity[0] = (mpm_real)(rate * ir);
         scale = 100 * 2 * 3.14159265358979 * (ir > 0 ? ir : 1);
         if (ir < 1 || ir > 4 || iz < 4 || iz > 8) continue;
-        if (fabs((double)w.node[i].force[0]) / scale > worst_force) worst_force = fabs((double)w.node[i].force[0]) / scale;
-        if (fabs((double)w.node[i].force[2]) / scale > worst_force) worst_force = fabs((double)w.node[i].force[2]) / scale;
+        if (fabs((double)w.node[i].force[0]) / scale > worst_force)
+            worst_force = fabs((double)w.node[i].force[0]) / scale;
+        if (fabs((double)w.node[i].force[2]) / scale > worst_force)
+            worst_force = fabs((double)w.node[i].force[2]) / scale;
     }
     if (shape == MPM_LINEAR) CHECK_NEAR("rings: no force inside under uniform pressure", worst_force, 0, 100 * eps);
     w.body[0].desc.stress = NULL;

@@ -54,7 +54,8 @@ static void test_contact_numbers(void)
                        pair[i], PRINTED(1e-5));
     CHECK_RELATIVE("compression time [s]", mpm_spray_compression_time(m, r, y), 1.6996e-7, PRINTED(3e-5));
     CHECK_RELATIVE("elastic contact time at 1 m/s [s]", mpm_spray_elastic_time(1, m, r, wall_e),
-                   2.87 * pow((double)m * (double)m / ((double)r * (double)wall_e * (double)wall_e), 0.2), PRINTED(1e-12));
+                   2.87 * pow((double)m * (double)m / ((double)r * (double)wall_e * (double)wall_e), 0.2),
+                   PRINTED(1e-12));
     gamma = mpm_spray_gamma12(MPM_SPRAY_MIXING_DISPERSION, d.target.surface_energy, d.particle.surface_energy);
     CHECK_RELATIVE("gamma_12, text [J/m^2]", gamma, 0.4499, 1e-4);
     CHECK_RELATIVE("gamma_12, B 31 [J/m^2]",

@@ -321,7 +321,8 @@ static void test_outcomes(void)
     int asked = 0;
     /* sticking speeds at 80 um: 1.262e-3 alpha on the target, 0.1446 times that on an equal particle */
     second_lands(MPM_SPRAY_DEPOSIT_STICK, infinite, 2, "infinite alpha sticks to the deposit");
-    second_lands(MPM_SPRAY_DEPOSIT_STICK, MPM_R(3e4), 1, "a particle that sticks to the target bounces off the deposit");
+    second_lands(MPM_SPRAY_DEPOSIT_STICK, MPM_R(3e4), 1,
+                 "a particle that sticks to the target bounces off the deposit");
     second_lands(MPM_SPRAY_DEPOSIT_STICK, MPM_R(3e5), 2, "ten times alpha: it sticks there too");
     second_lands(MPM_SPRAY_DEPOSIT_ALWAYS, MPM_R(3e4), 2, "always: it sticks");
     second_lands(MPM_SPRAY_DEPOSIT_BOUNCE, infinite, 1, "bounce: it does not");

@@ -244,7 +244,8 @@ static void test_tunnels(void)
     d.restitution = 1;
     done("init", mpm_spray_init(&s, &d, NULL, 0));
     for (k = 0; k < 100; k++) {
-        mpm_spray_ball b = flying(MPM_R(0.005), MPM_R(9e-4) * ((mpm_real)(k % 10) - MPM_R(4.5)), 80 + MPM_R(0.37) * (mpm_real)k);
+        mpm_spray_ball b = flying(MPM_R(0.005), MPM_R(9e-4) * ((mpm_real)(k % 10) - MPM_R(4.5)),
+                                  80 + MPM_R(0.37) * (mpm_real)k);
         b.x[2] = MPM_R(9e-4) * ((mpm_real)(k / 10) - MPM_R(4.5));
         if (mpm_spray_add(&s, &b) != MPM_OK) break;
     }
@@ -277,7 +278,8 @@ static void test_chain(void)
     mpm_spray_step(&s);
     CHECK_EQUAL("a row of five is struck through in one step", s.tally.pair_hits, 4);
     CHECK_RELATIVE("the last one leaves with the speed of the first", s.v[12], 40, 1e5 * (double)MPM_EPSILON);
-    CHECK_NEAR("... and has gone the rest of the way", s.x[12], 0.5 + 4 * 161e-6 + 40 * 5e-6 - 4e-6, 8 * (double)MPM_EPSILON);
+    CHECK_NEAR("... and has gone the rest of the way", s.x[12], 0.5 + 4 * 161e-6 + 40 * 5e-6 - 4e-6,
+               8 * (double)MPM_EPSILON);
     CHECK_NEAR("the first one rests", s.v[0], 0, 4e6 * (double)MPM_EPSILON);
     mpm_spray_free(&s);
 }

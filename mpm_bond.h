@@ -383,8 +383,9 @@ MPM_API int mpm_bond_logistic_roots(const mpm_logistic *fit, double x1, double l
 
 /* Where two boundaries cross inside the box low .. high of (x1, x2), low < high. Returns how many points
    it found, 0 .. 4, ordered by x1. The box is halved until neither boundary can be excluded from a part
-   2^-20 of its width; Newton's method finishes. Boundaries that touch or coincide give up to four points
-   of what they share. 0 also for a box or fit that is not finite. Test: 31_calibration. */
+   2^-20 of its width; Newton's method finishes. Points nearer than a 500th of the box count as one; boundaries
+   that coincide give up to four points of what they share. 0 also for a box or fit that is not finite.
+   Test: 31_calibration. */
 MPM_API int mpm_bond_logistic_cross(const mpm_logistic *a, const mpm_logistic *b, const double low[2],
                                     const double high[2], double point[4][2]);
 
@@ -1061,6 +1062,7 @@ static inline void mpm__polish(const double *a, const double *b, double reach, d
 static inline int mpm__crossings(const double *a, const double *b, double u, double v, double r,
                                  double (*point)[2], int n)
 {
+    const double near = 0.004; /* boundaries at a small angle meet in a strip, not in a part */
     int i;
     if (n == 4 || !mpm__may_vanish(a, u, v, r) || !mpm__may_vanish(b, u, v, r)) return n;
     if (r > 1e-6) {
@@ -1068,9 +1070,9 @@ static inline int mpm__crossings(const double *a, const double *b, double u, dou
             n = mpm__crossings(a, b, u + (i & 2 ? r : -r) / 2, v + (i & 1 ? r : -r) / 2, r / 2, point, n);
         return n;
     }
-    mpm__polish(a, b, 4 * r, &u, &v);
+    mpm__polish(a, b, near, &u, &v);
     for (i = 0; i < n; i++)
-        if (fabs(point[i][0] - u) <= 16 * r && fabs(point[i][1] - v) <= 16 * r) return n;
+        if (fabs(point[i][0] - u) <= near && fabs(point[i][1] - v) <= near) return n;
     point[n][0] = u;
     point[n][1] = v;
     return n + 1;

@@ -122,8 +122,8 @@ static void boundaries(void)
     const double low[2] = {-3, -3}, high[2] = {3, 3}, corner[2] = {0, 0}, half[2] = {0.5, 0.5};
     const mpm_logistic circle = known(-4, 0, 0, 1, 0, 1); /* x1^2 + x2^2 = 4 */
     const mpm_logistic hyperbola = known(-1, 0, 0, 0, 1, 0); /* x1 x2 = 1 */
-    const mpm_logistic line = known(-1, 1, 1, 0, 0, 0), up = known(0, -1, 1, 0, 0, 0);
-    mpm_logistic wide = circle;
+    const mpm_logistic line = known(-1, 1, 1, 0, 0, 0);
+    mpm_logistic up = known(0, -1, 1, 0, 0, 0), wide = circle;
     double p[4][2], root[2], wanted;
     int n, i, j;
     CHECK_EQUAL("two roots", mpm_bond_logistic_roots(&circle, 1.2, -9, 9, root), 2);
@@ -151,6 +151,14 @@ static void boundaries(void)
     CHECK_EQUAL("none between near circles", mpm_bond_logistic_cross(&circle, &wide, low, high, p), 0);
     CHECK_EQUAL("two lines, once", mpm_bond_logistic_cross(&line, &up, low, high, p), 1);
     CHECK_NEAR("... at a half", p[0][0], 0.5, 1e-15);
+    wide = known(8, -6, 0, 1, 0, 1); /* (x1 - 3)^2 + x2^2 = 1 */
+    CHECK_EQUAL("circles that touch, once", mpm_bond_logistic_cross(&circle, &wide, low, high, p), 1);
+    CHECK_NEAR("... at (2, 0)", hypot(p[0][0] - 2, p[0][1]), 0, 0.012);
+    wide = known(0, -0.001, 1, 0, 0, 0);
+    up = known(0, 0.001, 1, 0, 0, 0);
+    CHECK_EQUAL("lines at a small angle, once", mpm_bond_logistic_cross(&up, &wide, low, high, p), 1);
+    CHECK_NEAR("... at 0", hypot(p[0][0], p[0][1]), 0, 1e-12);
+    up = known(0, -1, 1, 0, 0, 0);
     wide = known(1, -2, 0, 1, 0, 0); /* (x1 - 1)^2 = 0 touches nothing but x1 = 1: a double line */
     n = mpm_bond_logistic_cross(&wide, &up, low, high, p);
     CHECK_TRUE("a double line is found", n >= 1);

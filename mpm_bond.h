@@ -1041,7 +1041,7 @@ static inline int mpm__may_vanish(const double *t, double u, double v, double r)
     return fabs(mpm__poly(t, u, v)) <= r * (fabs(du) + fabs(dv) + r * (fabs(t[3]) + fabs(t[4]) + fabs(t[5])));
 }
 
-/* Newton's method for both polynomials vanishing; stays put where it leads away by more than `reach`. */
+/* Newton's method for both polynomials vanishing; stays put where it leads away by more than `reach`, or no nearer. */
 static inline void mpm__polish(const double *a, const double *b, double reach, double *u, double *v)
 {
     double x = *u, y = *v;
@@ -1054,6 +1054,8 @@ static inline void mpm__polish(const double *a, const double *b, double reach, d
         y -= (fb * ax - fa * bx) / det;
     }
     if (!(fabs(x - *u) <= reach && fabs(y - *v) <= reach)) return;
+    if (fabs(mpm__poly(a, x, y)) > fabs(mpm__poly(a, *u, *v)) || fabs(mpm__poly(b, x, y)) > fabs(mpm__poly(b, *u, *v)))
+        return;
     *u = x;
     *v = y;
 }

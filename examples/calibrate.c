@@ -82,7 +82,7 @@ static int write_summary(const calibration *q, const calibration_result *r, cons
         mpm_io_json_number(&j, "velocity_m_s", q->velocity[size]);
         mpm_io_json_integer(&j, "tests", side->tests);
         mpm_io_json_integer(&j, "bonded", side->bonded);
-        mpm_io_json_string(&j, "fit", side->status < 0 ? "none: one class only" : mpm_io_status_text(side->status));
+        mpm_io_json_string(&j, "fit", side->why);
         if (side->status >= 0) {
             mpm_bond_logistic_theta(&side->fit, theta);
             for (k = 0; k < 6; k++) {
@@ -104,14 +104,16 @@ static void print_result(const calibration *q, const calibration_result *r, cons
     printf("\n");
     for (k = 0; k < 2; k++) {
         const calibration_side *side = &r->side[k];
-        printf("  %g um at %g m/s: %ld of %ld runs bonded, %s", q->diameter[k], q->velocity[k], side->bonded,
-               side->tests, side->status < 0 ? "no boundary: one class only\n" : "");
-        if (side->status >= 0) printf("%ld on the wrong side of the fitted boundary\n", side->fit.wrong);
+        printf("  %g um at %g m/s: %ld of %ld runs bonded, ", q->diameter[k], q->velocity[k], side->bonded,
+               side->tests);
+        if (side->status < 0) printf("no boundary: %s\n", side->why);
+        else printf("%ld on the wrong side of the fitted boundary\n", side->fit.wrong);
+        if (side->status > 0) printf("    the fit: %s\n", side->why);
     }
     for (k = 0; k < r->points; k++)
         printf("  the boundaries cross at G_c %.6g J/m2, Gdot_c %.4g J/m2/us\n", r->point[k][0], r->point[k][1]);
     if (r->same) printf("  the two sizes have the same classes: one boundary\n");
-    else if (!r->points) printf("  the boundaries do not cross in this range\n");
+    else if (!r->points && r->side[0].status >= 0 && r->side[1].status >= 0) printf("  the boundaries do not cross in this range\n");
     printf("  %s/tasks.csv, classes.png, summary.json\n", s->folder);
 }
 
@@ -151,7 +153,8 @@ static int check(const calibration *q, char *m, size_t n)
           case_wants(q->columns < CALIBRATION_NODES && q->rows < CALIBRATION_NODES &&
                          calibration_nodes(q) <= CALIBRATION_NODES,
                      "columns", (double)q->columns, "makes more than 4000 pairs", m, n) &&
-          case_wants(q->stays > 0, "stays", q->stays, "must be > 0 m/s", m, n)))
+          case_wants(q->stays > 0, "stays", q->stays, "must be > 0 m/s", m, n) &&
+          case_wants(q->ridge >= 0 && q->ridge < 1e6, "ridge", q->ridge, "must be >= 0", m, n)))
         return 0;
     if (strcmp(q->base.bond, "energy")) {
         snprintf(m, n, "--bond %s: the sweep is over G_c and Gdot_c, which only --bond energy has", q->base.bond);
@@ -203,6 +206,7 @@ int main(int argc, char **argv)
                "rule thesis: highest rebound ratio; 0: source A's");
     option_add(o, &n, "restitution-2", OPTION_REAL, &q.restitution[1], "");
     option_add(o, &n, "stays", OPTION_REAL, &q.stays, "rule stays: the late mean velocity is below, m/s");
+    option_add(o, &n, "ridge", OPTION_REAL, &q.ridge, "of the fits: holds those of separable classes back");
     option_add(o, &n, "whole-time", OPTION_FLAG, &whole, "do not end a run early when the particle has left");
     option_add(o, &n, "limit", OPTION_LONG, &s.limit, "stop after so many new runs; < 0: never");
     option_add(o, &n, "list", OPTION_FLAG, &listing, "print the tasks that are not done");

@@ -18,6 +18,7 @@ typedef struct calibration {
     double diameter[2], velocity[2]; /* um, m/s */
     double pbcp[2], restitution[2]; /* bonded: PBCP at least [%], rebound/impact velocity at most; 0: source A's */
     double stays;                   /* rule stays, m/s */
+    double ridge;                   /* of the fits: holds those of separable classes back */
 } calibration;
 
 /* Source A's tolerances (Table 5.2) for the grid nearest to this one. */
@@ -61,6 +62,7 @@ static inline calibration calibration_default(void)
     q.velocity[0] = 810;
     q.velocity[1] = 770;
     q.stays = critical_rule_default().stays;
+    q.ridge = 1e-4;
     return q;
 }
 
@@ -168,7 +170,8 @@ static inline long calibration_look(const calibration *q, const study *s, int si
 typedef struct calibration_side {
     calibration_map map;
     mpm_logistic fit;
-    mpm_status status;  /* of the fit; MPM_ERR_ARGUMENT with one class only */
+    mpm_status status;  /* of the fit */
+    char why[120];      /* its status in words */
     long tests, bonded;
 } calibration_side;
 
@@ -199,13 +202,18 @@ static inline void calibration_collect(const calibration *q, const study *s, cal
             outcome[side->tests++] = side->map.bonds[k];
             side->bonded += side->map.bonds[k];
         }
-        side->status = mpm_bond_logistic_fit(&side->fit, x1, x2, outcome, side->tests, 1e-4, 200, NULL);
+        side->status = mpm_bond_logistic_fit(&side->fit, x1, x2, outcome, side->tests, q->ridge, 200, NULL);
+        snprintf(side->why, sizeof side->why, "%s",
+                 side->tests < 6                                             ? "fewer than six runs"
+                 : side->bonded == 0 || side->bonded == side->tests          ? "one class only"
+                                                                             : mpm_io_status_text(side->status));
     }
     low[0] = calibration_x(q, q->gc[0]);
     low[1] = calibration_x(q, q->gdot[0]);
     high[0] = calibration_x(q, q->gc[1]);
     high[1] = calibration_x(q, q->gdot[1]);
-    r->same = !memcmp(r->side[0].map.bonds, r->side[1].map.bonds, (size_t)calibration_nodes(q));
+    r->same = r->side[0].status >= 0 && r->side[1].status >= 0 &&
+              !memcmp(r->side[0].map.bonds, r->side[1].map.bonds, (size_t)calibration_nodes(q));
     if (r->side[0].status >= 0 && r->side[1].status >= 0 && !r->same)
         r->points = mpm_bond_logistic_cross(&r->side[0].fit, &r->side[1].fit, low, high, r->point);
     for (k = 0; k < r->points; k++)
@@ -231,7 +239,8 @@ static inline int calibration_run(const calibration *q, study *s, char *message,
     return 1;
 }
 
-/* The classes of both sizes in the plane of the parameters, with both boundaries and their crossings. */
+/* The classes of both sizes (of those that have any) in the plane of the parameters, with both boundaries and their
+   crossings. */
 static inline int calibration_draw(const calibration *q, const calibration_result *r, const char *path,
                                    const char *note, mpm_fault *fault)
 {
@@ -244,7 +253,7 @@ static inline int calibration_draw(const calibration *q, const calibration_resul
     const double high = calibration_x(q, q->gdot[1]), low = calibration_x(q, q->gdot[0]);
     double root[2];
     long k;
-    int size, which, t;
+    int size, which, t, plots = 0;
     for (size = 0; size < 2; size++) /* the lower roots, a break, the upper roots */
         for (which = 0; which < 2; which++)
             for (t = 0; t < STEPS; t++) {
@@ -262,6 +271,7 @@ static inline int calibration_draw(const calibration *q, const calibration_resul
         py[t] = (mpm_real)r->point[t][1];
     }
     for (size = 0; size < 2; size++) {
+        if (r->side[size].tests == 0) continue;
         memset(curve[size], 0, sizeof curve[size]);
         for (k = 0; k < calibration_nodes(q); k++) {
             const int class_of = r->side[size].map.bonds[k];
@@ -289,16 +299,16 @@ static inline int calibration_draw(const calibration *q, const calibration_resul
         curve[size][4].count = (size_t)r->points;
         curve[size][4].mark = MPM_IO_DOTS;
         curve[size][4].color = 5;
-        d[size] = mpm_io_plot_desc_default();
-        d[size].curves = curve[size];
-        d[size].curve_count = 5;
-        d[size].log_x = d[size].log_y = !strcmp(q->scale, "log");
-        d[size].x_label = "G_c, J/m2";
-        d[size].y_label = "Gdot_c, J/m2/us";
+        d[plots] = mpm_io_plot_desc_default();
+        d[plots].curves = curve[size];
+        d[plots].curve_count = 5;
+        d[plots].log_x = d[plots].log_y = !strcmp(q->scale, "log");
+        d[plots].x_label = "G_c, J/m2";
+        d[plots].y_label = "Gdot_c, J/m2/us";
         snprintf(title[size], sizeof title[size], "%g um at %g m/s", q->diameter[size], q->velocity[size]);
-        d[size].title = title[size];
+        d[plots++].title = title[size];
     }
-    return study_plots(path, d, 2, 2, note, fault);
+    return study_plots(path, d, plots, plots, note, fault);
 }
 
 #endif

@@ -331,7 +331,8 @@ typedef struct impact_result {
     double relative, filtered_relative;                /* rebound less that drift */
     double tangential;                                 /* mean v_x of the particle */
     double flattening;                                 /* 1 - height / height at the start: what mpm_splat calls
-                                                          compression; its flattening is of the width */
+                                                          compression (its flattening is of the width); of the points
+                                                          within 60 m/s of the mean: ejected ones fly far */
     double crater;                                     /* see mpm_splat */
     double contact_area, bonded_area;                  /* of the whole particle: see mpm_bond_measure */
     double ejected_fraction;                           /* of the particle's mass, faster than 60 m/s */
@@ -366,7 +367,8 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
     r.relative = r.rebound.mean - r.substrate_drift;
     r.filtered_relative = r.rebound.filtered - r.substrate_drift;
     r.tangential = w->desc.side[0] == MPM_SIDE_SYMMETRY ? 0 : r.particle.momentum[0] / r.particle.mass;
-    r.flattening = 1 - (r.particle.high[2] - r.particle.low[2] + c->spacing) / (2 * impact_half_height(c));
+    r.flattening = mpm_splat_measure(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE,
+                                     (mpm_real)(60 + fabs(r.rebound.mean))).compression;
     r.crater = mpm_splat_measure(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE, MPM_R(1e15)).crater; /* deep points move */
     r.contact_area = r.particle_bond.contacted_area * impact_copies(s);
     r.bonded_area = r.particle_bond.bonded_area * impact_copies(s);

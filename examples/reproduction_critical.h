@@ -1,5 +1,5 @@
-/* reproduction_critical.h - the critical velocity by size, its scatter and where that comes from, other readings
-   of the bond rule, and impacts that were not calibrated on. SPDX-License-Identifier: MIT */
+/* reproduction_critical.h - the critical velocity by size, other readings of the bond rule, and impacts that were
+   not calibrated on. SPDX-License-Identifier: MIT */
 #ifndef REPRODUCTION_CRITICAL_H
 #define REPRODUCTION_CRITICAL_H
 
@@ -86,24 +86,36 @@ static inline const char *budget_grid(const work *w) { return w->budget == QUICK
 static const double sizes[SIZES] = {14, 18, 22, 26, 30};
 static const double said_critical[SIZES] = {824, 809, 791, 776, 761};
 
+/* The bond's pair: source A's, and the one at which A-cal's edges of both sizes fall together at 0.7/0.175 um (the
+   middle of the step, in ratio, between the last Gdot_c that bonds and the first that does not). */
+typedef struct bond_pair {
+    double gc, gdot; /* J/m2, J/(m2 us) */
+} bond_pair;
+
+enum { SOURCE_PAIR, OWN_PAIR };
+static const bond_pair pairs[2] = {{1503.74, 2.271e5}, {2236.07, 2.8e5}};
+
 /* A way to find the critical velocities: which sizes at how many positions of the grid (0: not), and on which
    budgets (bits). */
 typedef struct critical_setting {
     double cell, spacing;
+    int pair;
     const char *geometry, *substrate, *name;
     int times[SIZES], budgets;
 } critical_setting;
 
-#define SETTINGS 8
+#define SETTINGS 10
 static const critical_setting settings[SETTINGS] = {
-    {1.5, 0.5, "axisymmetric", "thesis", "1.5/0.5", {4, 4, 4, 4, 4}, 1 << QUICK},
-    {1.0, 0.25, "axisymmetric", "thesis", "1/0.25", {8, 8, 8, 8, 8}, 1 << DESK | 1 << FULL},
-    {0.7, 0.175, "axisymmetric", "thesis", "0.7/0.175", {8, 0, 0, 0, 4}, 1 << DESK},
-    {0.7, 0.175, "axisymmetric", "thesis", "0.7/0.175", {8, 8, 8, 8, 8}, 1 << FULL},
-    {1.0, 0.25, "axisymmetric", "large", "1/0.25, large substrate", {8, 0, 0, 0, 0}, 1 << DESK},
-    {1.0, 0.25, "axisymmetric", "large", "1/0.25, large substrate", {8, 8, 8, 8, 8}, 1 << FULL},
-    {0.7, 0.175, "3d", "thesis", "0.7/0.175, 3D", {1, 0, 0, 0, 0}, 1 << DESK},
-    {0.7, 0.175, "3d", "thesis", "0.7/0.175, 3D", {8, 8, 8, 8, 8}, 1 << FULL}};
+    {1.5, 0.5, SOURCE_PAIR, "axisymmetric", "thesis", "1.5/0.5", {4, 4, 4, 4, 4}, 1 << QUICK},
+    {1.0, 0.25, SOURCE_PAIR, "axisymmetric", "thesis", "1/0.25", {8, 8, 8, 8, 8}, 1 << DESK | 1 << FULL},
+    {0.7, 0.175, SOURCE_PAIR, "axisymmetric", "thesis", "0.7/0.175", {8, 4, 4, 4, 4}, 1 << DESK},
+    {0.7, 0.175, OWN_PAIR, "axisymmetric", "thesis", "0.7/0.175, own pair", {8, 4, 4, 4, 4}, 1 << DESK},
+    {0.7, 0.175, SOURCE_PAIR, "axisymmetric", "thesis", "0.7/0.175", {8, 8, 8, 8, 8}, 1 << FULL},
+    {0.7, 0.175, OWN_PAIR, "axisymmetric", "thesis", "0.7/0.175, own pair", {8, 8, 8, 8, 8}, 1 << FULL},
+    {1.0, 0.25, SOURCE_PAIR, "axisymmetric", "large", "1/0.25, large substrate", {8, 0, 0, 0, 4}, 1 << DESK},
+    {1.0, 0.25, SOURCE_PAIR, "axisymmetric", "large", "1/0.25, large substrate", {8, 8, 8, 8, 8}, 1 << FULL},
+    {0.7, 0.175, SOURCE_PAIR, "3d", "thesis", "0.7/0.175, 3D", {1, 0, 0, 0, 0}, 1 << DESK},
+    {0.7, 0.175, SOURCE_PAIR, "3d", "thesis", "0.7/0.175, 3D", {8, 8, 8, 8, 8}, 1 << FULL}};
 
 /* One size by one setting and rule: a row of the table and of the file. As study_need. */
 static inline int critical_row(work *w, mpm_io_csv *t, const critical_setting *g, int size, const char *rule_name,
@@ -117,6 +129,8 @@ static inline int critical_row(work *w, mpm_io_csv *t, const critical_setting *g
     c.cell = g->cell;
     c.spacing = g->spacing;
     c.geometry = g->geometry;
+    c.gc = pairs[g->pair].gc;
+    c.gdot = pairs[g->pair].gdot;
     study_complete(&c, g->substrate);
     if (!strcmp(g->geometry, "3d") && w->budget == DESK) { /* a spot check: halving alone */
         range.low = 600;
@@ -164,9 +178,11 @@ static inline void critical_point(critical_line *l, double x, double v)
     l->y[l->count++] = (mpm_real)v;
 }
 
-/* Critical velocity over the position of the grid, a curve per size. */
+/* Critical velocity over the position of the grid, a curve per size: file and picture. */
 static inline int position_plot(work *w, const critical_line *size)
 {
+    mpm_io_csv t;
+    size_t i;
     mpm_io_curve line[SIZES];
     mpm_io_plot_desc d = mpm_io_plot_desc_default();
     char path[MPM_IO_PATH];
@@ -180,6 +196,16 @@ static inline int position_plot(work *w, const critical_line *size)
         line[k].color = k;
         line[k].name = size[k].name;
     }
+    mpm_io_csv_begin(&t, data_file(w, "position.csv", path, sizeof path),
+                     "diameter_um,grid_plane_over_interface_cells,critical_velocity_m_s",
+                     "A-crit; positions at which nothing bonded are left out", &w->fault);
+    for (k = 0; k < SIZES; k++)
+        for (i = 0; i < size[k].count; i++) {
+            mpm_io_csv_real(&t, (mpm_real)sizes[k]);
+            mpm_io_csv_real(&t, size[k].x[i]);
+            mpm_io_csv_real(&t, size[k].y[i]);
+        }
+    if (mpm_io_csv_end(&t, &w->fault) < 0) return failed(w);
     d.curves = line;
     d.curve_count = SIZES;
     d.title = "critical velocity over the position of the grid";
@@ -260,7 +286,8 @@ static inline int critical(work *w)
                      "diameter_um,critical_velocity_m_s,lowest_m_s,highest_m_s,offsets,pbcp_percent,v_rest_m_s,cell_um,"
                      "spacing_um,geometry,substrate_diameter_um,substrate_height_um,gc,gdot,rule",
                      "A-crit", &w->fault);
-    say(w, "### A-crit: critical velocity\n\nG_c 1503.74 J/m2, Gdot_c 2.271e5 J/(m2 us), not recalibrated here; "
+    say(w, "### A-crit: critical velocity\n\nG_c 1503.74 J/m2, Gdot_c 2.271e5 J/(m2 us), as source A, and an own pair, "
+           "%.2f and %.4g, at which both sizes of A-cal just bond at 0.7/0.175 um, the interface on a grid plane; "
            "axisymmetric unless 3D is said, time step factor 0.2. Median and extremes over so many positions of the "
            "grid in the cell of the lowest velocity that bonds, between %.0f and %.0f m/s to %.0f m/s (3D at the desk "
            "budget: one position, halved between 600 and 1000 m/s). Rule \"thesis\": PBCP at least 5.0 %% and rebound "
@@ -270,7 +297,7 @@ static inline int critical(work *w)
            "not stated, at 0.7/0.175. Experiment: 810 m/s (14 um), 770 (30 um).\n\n"
            "| um | rule | cell/spacing, substrate, um | positions | source A | here | lowest - highest | difference "
            "| on the plane | PBCP, %% | not above | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-        range.low, range.high, range.step);
+        pairs[OWN_PAIR].gc, pairs[OWN_PAIR].gdot, range.low, range.high, range.step);
     status = critical_rows(w, &t, setting, &count, size);
     if (status <= 0) {
         mpm_io_csv_drop(&t);
@@ -286,100 +313,6 @@ static inline int critical(work *w)
     if (mpm_io_csv_end(&t, &w->fault) < 0) return failed(w);
     status = critical_plot(w, setting, count);
     return status > 0 ? position_plot(w, size) : status;
-}
-
-/* ---- where the scatter comes from ------------------------------------------------------------ */
-
-/* One velocity at eight positions of the grid, without and with the bond: what changes with the position. */
-static inline int positions(work *w)
-{
-    double value[2][STUDY_VALUES];
-    int k, b, status;
-    w->s.early = 0;
-    w->s.planned = w->s.done + 16;
-    say(w, "### Where the scatter comes from\n\n14 um at 810 m/s, %s um, axisymmetric, at eight positions of the grid: "
-           "the rebound without bond, and with it mean D of the contacted points, PBCP, and the rebound.\n\n"
-           "| grid plane over the interface, um | rebound without bond, m/s | mean D | PBCP, %% | rebound, m/s "
-           "|\n|---|---|---|---|---|\n", budget_grid(w));
-    for (k = 0; k < 8; k++) {
-        for (b = 0; b < 2; b++) {
-            impact_case c = budget_case(w);
-            c.offset = c.cell * k / 8;
-            c.bond = b ? "energy" : "none";
-            study_complete(&c, "thesis");
-            if ((status = study_need(&w->s, &c, value[b], w->message, sizeof w->message)) <= 0) return status;
-        }
-        say(w, "| %.3f | %.1f | %.3f | %.2f | %.1f |\n", budget_case(w).cell * k / 8, value[0][STUDY_V_MEAN],
-            value[1][STUDY_ABP], value[1][STUDY_PBCP], value[1][STUDY_V_MEAN]);
-    }
-    say(w, "\n");
-    return 1;
-}
-
-/* The critical velocity of 14 um over grid positions, one choice of the method changed at a time. */
-static inline int scatter(work *w)
-{
-    static const struct {
-        const char *what;
-        variation vary;
-        const char *functions, *normal, *average, *substrate;
-        int separation;
-        double width, friction;
-    } row[] = {{"as source A", VARY_GRID, "linear", "ranked", "mean", "thesis", 0, 0, 0},
-               {"grid kept, start gap varied", VARY_GAP, "linear", "ranked", "mean", "thesis", 0, 0, 0},
-               {"grid kept, time step varied", VARY_STEP, "linear", "ranked", "mean", "thesis", 0, 0, 0},
-               {"GIMP", VARY_GRID, "gimp", "ranked", "mean", "thesis", 0, 0, 0},
-               {"logistic normals", VARY_GRID, "linear", "logistic", "mean", "thesis", 0, 0, 0},
-               {"nodal D weighted with N", VARY_GRID, "linear", "ranked", "weighted", "thesis", 0, 0, 0},
-               {"threshold softened, from D 0.5", VARY_GRID, "linear", "ranked", "mean", "thesis", 0, 1, 0},
-               {"GIMP, logistic, weighted, softened", VARY_GRID, "gimp", "logistic", "weighted", "thesis", 0, 1, 0},
-               {"contact where points touch", VARY_GRID, "linear", "ranked", "mean", "thesis", 1, 0, 0},
-               {"GIMP, logistic, where points touch", VARY_GRID, "gimp", "logistic", "mean", "thesis", 1, 0, 0},
-               {"friction 0.2", VARY_GRID, "linear", "ranked", "mean", "thesis", 0, 0, 0.2},
-               {"substrate 70 x 35 um", VARY_GRID, "linear", "ranked", "mean", "large", 0, 0, 0}};
-    const int rows = (int)(sizeof row / sizeof row[0]), times = budget_times(w);
-    critical_range range = critical_budget(w);
-    critical_outcome out;
-    char path[MPM_IO_PATH];
-    mpm_io_csv t;
-    int k, status = positions(w);
-    if (status <= 0) return status;
-    range.high = 1200;
-    w->s.early = 1;
-    w->s.planned = w->s.done + rows * times * critical_cost(&range);
-    mpm_io_csv_begin(&t, data_file(w, "scatter.csv", path, sizeof path),
-                     "choice,critical_velocity_m_s,lowest_m_s,highest_m_s,offsets,not_bonded_above", "scatter",
-                     &w->fault);
-    say(w, "Critical velocity of 14 um, rule \"thesis\", %d positions of the grid, %s um, one choice changed at a "
-           "time. The pair G_c, Gdot_c is source A's throughout: a choice that moves the median would need its own.\n\n"
-           "| choice | median, m/s | lowest - highest | not above | CPU s |\n|---|---|---|---|---|\n",
-        times, budget_grid(w));
-    for (k = 0; k < rows; k++) {
-        impact_case c = budget_case(w);
-        c.functions = row[k].functions;
-        c.normal = row[k].normal;
-        c.bond_average = row[k].average;
-        c.separation = row[k].separation;
-        c.bond_width = row[k].width;
-        c.friction = row[k].friction;
-        study_complete(&c, row[k].substrate);
-        status = critical_repeat(w, c, row[k].vary, "thesis", range, times, &out);
-        if (status <= 0) {
-            mpm_io_csv_drop(&t);
-            return status;
-        }
-        mpm_io_csv_text(&t, row[k].what);
-        mpm_io_csv_real(&t, (mpm_real)out.spread.median);
-        mpm_io_csv_real(&t, (mpm_real)out.spread.lowest);
-        mpm_io_csv_real(&t, (mpm_real)out.spread.highest);
-        mpm_io_csv_integer(&t, times);
-        mpm_io_csv_integer(&t, out.lost);
-        say(w, "| %s | ", row[k].what);
-        say_spread(w, &out.spread, range.high);
-        say(w, " | %d | %.0f |\n", out.lost, out.cpu);
-    }
-    say(w, "\n");
-    return mpm_io_csv_end(&t, &w->fault) >= 0 || failed(w);
 }
 
 /* ---- what the rule's constants mean ---------------------------------------------------------- */
@@ -462,11 +395,12 @@ static inline int regularisation(work *w)
 static inline int other_pairs(work *w)
 {
     static const double pair[3][2] = {{500, 1.35e6}, {1503.74, 2.271e5}, {5000, 2.6e5}};
-    const critical_range range = critical_budget(w);
+    critical_range range = critical_budget(w);
     const grid g = {w->budget == FULL ? 1.0 : 1.5, w->budget == FULL ? 0.25 : 0.5};
     critical_outcome out;
     char pbcp[40];
     int p, k, status;
+    range.high = 1400;
     w->s.early = 1;
     w->s.planned = w->s.done + 6 * 4 * critical_cost(&range);
     say(w, "### Other pairs\n\nRule \"stays\", %.3g/%.3g um, axisymmetric, four positions of the grid.\n\n"
@@ -489,42 +423,6 @@ static inline int other_pairs(work *w)
         }
         say(w, " |\n");
     }
-    say(w, "\n");
-    return 1;
-}
-
-/* Contact where the points touch, with GIMP and logistic normals, and G_c 1503.74 with the Gdot_c that brings 14 um
-   near the experiment: what is left of the scatter, and the fall with size. */
-static inline int points_touch(work *w)
-{
-    static const double diameter[2] = {14, 30};
-    const int times[2] = {8, 4};
-    const critical_range range = critical_budget(w);
-    critical_outcome out;
-    char number[40];
-    int k, r, status;
-    w->s.early = 1;
-    w->s.planned = w->s.done + 12 * critical_cost(&range);
-    say(w, "### Contact where the points touch\n\nWith GIMP, logistic normals, G_c 1503.74 J/m2 and Gdot_c 1.35e5 "
-           "J/(m2 us); %s um, axisymmetric. Experiment: 810 m/s at 14 um, 770 at 30.\n\n"
-           "| um | rule | positions | median, m/s | lowest - highest | on the plane | PBCP, %% | not above | CPU s "
-           "|\n|---|---|---|---|---|---|---|---|---|\n", budget_grid(w));
-    for (k = 0; k < 2; k++)
-        for (r = 0; r < 2; r++) {
-            impact_case c = budget_case(w);
-            c.diameter = diameter[k];
-            c.functions = "gimp";
-            c.normal = "logistic";
-            c.separation = 1;
-            c.gdot = 1.35e5;
-            study_complete(&c, "thesis");
-            if ((status = critical_repeat(w, c, VARY_GRID, rule_names[r], range, times[k], &out)) <= 0) return status;
-            say(w, "| %g | %s | %d | ", diameter[k], rule_names[r], times[k]);
-            say_spread(w, &out.spread, range.high);
-            say(w, " | %s", velocity_text(out.each[0], range.high, number, sizeof number));
-            say(w, " | %s | %d | %.0f |\n", measure_text(out.spread.middle.pbcp, number, sizeof number), out.lost,
-                out.cpu);
-        }
     say(w, "\n");
     return 1;
 }

@@ -73,7 +73,8 @@ enum {
     STUDY_PBCP,       /* % */
     STUDY_ABP,
     STUDY_CONTACTED,  /* surface points */
-    STUDY_V_REST,     /* mean over the particle's points up to 60 m/s (as seen from the ground), at the end */
+    STUDY_V_REST,     /* mean over the particle's points up to 60 m/s (as seen from the ground), at the end; over
+                         all where more than half of its mass is faster */
     STUDY_V_MEAN,     /* mass-weighted mean, at the end */
     STUDY_V_LATE,     /* the same averaged over the last eighth of the time */
     STUDY_DRIFT,      /* the substrate's mean */
@@ -84,7 +85,8 @@ enum {
     STUDY_WORK,       /* mean plastic energy density of the particle, MPa */
     STUDY_T_MAX,      /* K */
     STUDY_EJECTED,    /* share of the particle's mass faster than 60 m/s */
-    STUDY_JET,        /* share of the particle's mass further than 1.5 initial radii from its axis */
+    STUDY_RIM,        /* height of the substrate's rim over its face, of its points up to 60 m/s, um */
+    STUDY_SHEARED,    /* mass of both bodies strained beyond 3, of the particle's */
     STUDY_R_CONTACT,  /* median distance from the axis of the particle's points with D > 0, um */
     STUDY_R_BONDED,   /* ... with D >= 1; 0 without any */
     STUDY_INNER,      /* share of the bonded points (by mass) in the inner half of the contact radius, which is
@@ -100,7 +102,7 @@ enum {
 static const char *const study_name[STUDY_VALUES] = {
     "pbcp_percent", "abp", "contacted_points", "v_rest_m_s", "v_mean_m_s", "v_late_m_s", "substrate_drift_m_s",
     "held_pairs", "held_late_share", "flattening", "eps_mean", "plastic_energy_density_MPa", "temperature_max_K",
-    "ejected_mass_share", "jet_mass_share", "contact_radius_um", "bonded_radius_um", "bonded_inner_share",
+    "ejected_mass_share", "rim_um", "sheared_mass_share", "contact_radius_um", "bonded_radius_um", "bonded_inner_share",
     "energy_unaccounted", "end_ns", "steps", "points", "cpu_s"};
 
 /* A study under way: where finished runs are kept, and what the progress line needs. */
@@ -171,6 +173,16 @@ static inline double study_radius(const mpm_world *w, int32_t i)
     return w->desc.geometry == MPM_3D ? hypot(x, y) : x;
 }
 
+/* Mass of both bodies strained beyond that. */
+static inline double study_sheared(const mpm_world *w, double strain)
+{
+    double mass = 0;
+    int32_t i;
+    for (i = 0; i < w->points.count; i++)
+        if ((double)w->points.plastic_strain[i] > strain) mass += (double)w->points.mass[i];
+    return mass;
+}
+
 /* Mass of the particle within a distance of the axis; with a floor > 0 only of surface points whose D is at
    least that. */
 static inline double study_within(const mpm_world *w, double radius, double floor)
@@ -198,6 +210,13 @@ static inline double study_median_radius(const mpm_world *w, double floor)
         else high = (low + high) / 2;
     }
     return high;
+}
+
+/* Whether the particle's points up to 60 m/s leave the ground at more than 5 m/s, or most of it is faster than 60. */
+static inline int study_leaves(const mpm_world *w)
+{
+    const mpm_rebound r = mpm_restitution(w, IMPACT_PARTICLE, 60);
+    return r.filtered > 5 || r.ejected_mass > 0.5 * mpm_body_totals(w, IMPACT_PARTICLE).mass;
 }
 
 /* Runs a case to its end. With s->early it ends as soon as the outcome is decided: in a twentieth of
@@ -232,7 +251,7 @@ static inline int study_run(study *s, const impact_case *c, double *value, char 
         if (w->steps % part) continue;
         study_distance(w, &height, &velocity);
         if (s->early && held == 0 && w->steps < late && velocity > 5 && fabs(velocity - before) < 0.01 * velocity &&
-            mpm_restitution(w, IMPACT_PARTICLE, 60).filtered > 5)
+            study_leaves(w))
             break;
         before = velocity;
         held = 0;
@@ -242,7 +261,7 @@ static inline int study_run(study *s, const impact_case *c, double *value, char 
     value[STUDY_PBCP] = r.bond.pbcp;
     value[STUDY_ABP] = r.bond.abp;
     value[STUDY_CONTACTED] = (double)r.bond.contacted;
-    value[STUDY_V_REST] = r.filtered_relative;
+    value[STUDY_V_REST] = r.ejected_fraction > 0.5 ? r.relative : r.filtered_relative;
     value[STUDY_V_MEAN] = r.relative;
     value[STUDY_V_LATE] = late_time > 0 && (double)run.world.time > late_time
                               ? (height - start) / ((double)run.world.time - late_time) : value[STUDY_V_MEAN];
@@ -254,7 +273,8 @@ static inline int study_run(study *s, const impact_case *c, double *value, char 
     value[STUDY_WORK] = r.particle.plastic_work_mean;
     value[STUDY_T_MAX] = r.all.temperature_max;
     value[STUDY_EJECTED] = r.ejected_fraction;
-    value[STUDY_JET] = fmax(0, 1 - study_within(&run.world, 0.75 * c->diameter, 0) / r.particle.mass);
+    value[STUDY_RIM] = mpm_splat_measure(&run.world, IMPACT_PARTICLE, IMPACT_SUBSTRATE, 60).rim;
+    value[STUDY_SHEARED] = study_sheared(&run.world, 3) / r.particle.mass;
     value[STUDY_R_CONTACT] = study_median_radius(&run.world, 1e-12);
     value[STUDY_R_BONDED] = study_median_radius(&run.world, 1);
     value[STUDY_INNER] = case_share(study_within(&run.world, value[STUDY_R_CONTACT] / sqrt(2.0), 1),

@@ -9,7 +9,9 @@
 int main(int argc, char **argv)
 {
     static particles_case q;
+    const char *leads = "top";
     double offset = 0, height = 30;
+    long top;
     option o[IMPACT_OPTIONS];
     char message[200];
     int n, parsed;
@@ -17,6 +19,8 @@ int main(int argc, char **argv)
     n = particles_options(&q, o);
     option_add(o, &n, "offset", OPTION_REAL, &offset, "of the second particle along x, at the start, um");
     option_add(o, &n, "height", OPTION_REAL, &height, "of its centre over the substrate, at the start, um");
+    option_add(o, &n, "leads", OPTION_TEXT, &leads,
+               "whose surface sets the (ranked) normal between the two: top|bottom; that one is number 1 in the report");
     parsed = options_parse(argc, argv, "Two particles, one after the other, on one spot or beside it.\n"
                            "Writes particles.csv, pairs.csv, summary.json, particles.pvd (ParaView) and frames;\n"
                            "run again with the same options after an interruption, it goes on; a finished scene\n"
@@ -24,11 +28,13 @@ int main(int argc, char **argv)
     if (parsed) return parsed < 0;
     if (!particles_check(&q, message, sizeof message) ||
         !case_wants(fabs(offset) < 1e3, "offset", offset, "must be a length in um", message, sizeof message) ||
-        !case_wants(height > 0 && height < 1e4, "height", height, "must be > 0 um", message, sizeof message))
+        !case_wants(height > 0 && height < 1e4, "height", height, "must be > 0 um", message, sizeof message) ||
+        !case_knows("top|bottom", "leads", leads, message, sizeof message))
         return !complain(message);
     q.count = 2;
-    q.center[0][2] = impact_half_height(&q.base);
-    q.center[1][0] = offset;
-    q.center[1][2] = height;
+    top = !strcmp(leads, "top"); /* its number: the higher one leads */
+    q.center[1 - top][2] = impact_half_height(&q.base);
+    q.center[top][0] = offset;
+    q.center[top][2] = height;
     return particles_done(&q) ? 0 : particles_main(&q, o, n);
 }

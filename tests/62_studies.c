@@ -61,9 +61,12 @@ static void critical(void)
     CHECK_EQUAL("a weaker rate", run(command), 0);
     CHECK_TRUE("... is another case", number_in(summary, "runs_made_now") > 4);
     CHECK_TRUE("... that bonds at a lower velocity", number_in(summary, "critical_velocity_m_s") < first);
-    snprintf(command, sizeof command, "%s --offsets 2", search);
+    snprintf(command, sizeof command, "%s --offsets 2 --high 1100", search);
     CHECK_EQUAL("two grid offsets", run(command), 0);
-    CHECK_TRUE("... give extremes", number_in(summary, "lowest_m_s") <= first);
+    CHECK_EQUAL("... both of which bond", number_in(summary, "offsets_without_bond"), 0);
+    CHECK_TRUE("... not at the same velocity", number_in(summary, "lowest_m_s") < number_in(summary, "highest_m_s"));
+    CHECK_NEAR("... with the median between", number_in(summary, "critical_velocity_m_s"),
+               (number_in(summary, "lowest_m_s") + number_in(summary, "highest_m_s")) / 2, 1e-9);
     snprintf(command, sizeof command, "%s --bond none", search);
     CHECK_EQUAL("without bonding", run(command), 0);
     CHECK_EQUAL("... no velocity bonds", number_in(summary, "offsets_without_bond"), 1);
@@ -104,6 +107,10 @@ static void calibration(void)
     CHECK_TRUE("... says so", !strncmp(output, "stopped after 0 new runs", 24));
     snprintf(command, sizeof command, "%s --task 0", sweep);
     CHECK_EQUAL("one task alone", run(command), 0);
+    snprintf(command, sizeof command, "%s --collect", sweep);
+    CHECK_EQUAL("... can be collected", run(command), 0);
+    CHECK_TRUE("... no fit", strstr(text_of(summary), "\"fit\": \"fewer than six runs\"") != NULL);
+    CHECK_TRUE("... a picture of one size", contents(FOLDER "/calibrate/classes.png", output, sizeof output) > 1000);
     snprintf(command, sizeof command, "%s --list", sweep);
     run(command);
     CHECK_EQUAL("... leaves the list", lines(output), tasks - 1);
@@ -125,6 +132,7 @@ static void calibration(void)
     refused("calibrate --gc-low 0", "gc-low 0");
     refused("calibrate --gdot-high 10", "gdot-high 10");
     refused("calibrate --scale cubic", "cubic");
+    refused("calibrate --ridge -1", "ridge -1");
     refused("calibrate --bond strain", "--bond strain: the sweep");
     refused("calibrate --bond none", "--bond none: the sweep");
     refused("calibrate --task 9999", "9999");

@@ -104,13 +104,21 @@ static void interrupted(const char *normal, int separation)
     }
 }
 
+static void refused(const char *command, const char *said)
+{
+    char line[300];
+    snprintf(line, sizeof line, "build/%s --out " FOLDER "/bad >" FOLDER "/out 2>&1", command);
+    CHECK_TRUE(command, system(line) != 0);
+    CHECK_TRUE("... with a message naming it", strstr(text_of(FOLDER "/out"), said) != NULL);
+}
+
 /* What a person does: other options, or a damaged file, begin afresh. */
 static void afresh(void)
 {
     static const struct {
         const char *options;
         const char *said, *stopped;
-    } turn[] = {{"--velocity 800", "", "stopped at step 5 "},
+    } turn[] = {{"--velocity 800", "stopped at step 5 ", "stopped at step 5 "},
                 {"--velocity 800", "going on from step 5 of", "stopped at step 10 "},
                 {"--velocity 801", "starting afresh", "stopped at step 5 "},
                 {"--velocity 801 --offset 0.5", "starting afresh", "stopped at step 5 "},
@@ -133,6 +141,23 @@ static void afresh(void)
         CHECK_TRUE("... says so", strstr(text_of(FOLDER "/out"), k < 6 ? turn[k].said : "starting afresh") != NULL);
         CHECK_TRUE("... and where", strstr(text_of(FOLDER "/out"), k < 6 ? turn[k].stopped : "at step 5 ") != NULL);
     }
+}
+
+/* Whose surface sets the normal between two particles: that one has the higher number. */
+static void leaders(void)
+{
+    static const char *const leader[2] = {"top", "bottom"};
+    char command[400], wanted[2][20] = {"\n1,1,0,30,", "\n0,1,0,30,"};
+    int k;
+    for (k = 0; k < 2; k++) {
+        snprintf(command, sizeof command,
+                 "build/two_particles --cell 2 --spacing 1 --substrate-diameter 24 --substrate-height 6 --time 0.05 "
+                 "--frames 0 --offset 1 --leads %s --quiet --out " FOLDER "/leads_%s", leader[k], leader[k]);
+        CHECK_EQUAL(leader[k], system(command), 0);
+        snprintf(command, sizeof command, FOLDER "/leads_%s/particles.csv", leader[k]);
+        CHECK_TRUE("... leads", strstr(text_of(command), wanted[k]) != NULL);
+    }
+    refused("two_particles --leads left", "--leads left");
 }
 
 /* Takes the lines that name an option out of a summary, as if it were older than the option. */
@@ -319,14 +344,6 @@ static void partners(void)
     CHECK_TRUE("... of all three bodies", found[1] > 0 && found[2] > 0 && found[3] > 0);
 }
 
-static void refused(const char *command, const char *said)
-{
-    char line[300];
-    snprintf(line, sizeof line, "build/%s --out " FOLDER "/bad >" FOLDER "/out 2>&1", command);
-    CHECK_TRUE(command, system(line) != 0);
-    CHECK_TRUE("... with a message naming it", strstr(text_of(FOLDER "/out"), said) != NULL);
-}
-
 int main(void)
 {
     CHECK_EQUAL("an empty folder", system("rm -rf " FOLDER " && mkdir -p " FOLDER), 0);
@@ -343,6 +360,7 @@ int main(void)
     first_place("--shape ellipsoid --aspect 0.7", 7 / cbrt(0.7) * 0.7);
     first_place("--shape ellipsoid --aspect 2", 7 / cbrt(2.0) * 2);
     afresh();
+    leaders();
     refused("many_particles --cell 1e9", "--cell 1000000000");
     refused("many_particles --cell 100 --spread 20", "smaller --cell");
     refused("many_particles --time -1", "--time -1");

@@ -113,7 +113,8 @@ static void print_result(const calibration *q, const calibration_result *r, cons
     for (k = 0; k < r->points; k++)
         printf("  the boundaries cross at G_c %.6g J/m2, Gdot_c %.4g J/m2/us\n", r->point[k][0], r->point[k][1]);
     if (r->same) printf("  the two sizes have the same classes: one boundary\n");
-    else if (!r->points && r->side[0].status >= 0 && r->side[1].status >= 0) printf("  the boundaries do not cross in this range\n");
+    else if (!r->points && r->side[0].status >= 0 && r->side[1].status >= 0)
+        printf("  the boundaries do not cross in this range\n");
     printf("  %s/tasks.csv, classes.png, summary.json\n", s->folder);
 }
 

@@ -153,9 +153,9 @@ static int jets(work *w)
     int g, k, status;
     w->s.early = 0;
     w->s.planned = w->s.done + 2 * count;
-    say(w, "### A-jet: below and above the critical velocity\n\n| impact | source A | cell/spacing, um | rim of "
-           "the substrate, um | both bodies strained beyond 3, %% of the particle | faster than 60 m/s, %% | mean velocity at the end, m/s | PBCP, %% | height "
-           "lost, share | CPU s |\n|---|---|---|---|---|---|---|---|---|---|\n");
+    say(w, "### A-jet: below and above the critical velocity\n\n| impact | source A | cell/spacing, um | rim of the "
+           "substrate, um | both bodies strained beyond 3, %% of the particle | faster than 60 m/s, %% | mean velocity "
+           "at the end, m/s | PBCP, %% | height lost, share | CPU s |\n|---|---|---|---|---|---|---|---|---|---|\n");
     for (k = 0; k < 2; k++)
         for (g = 0; g < count; g++) {
             impact_case c = study_case_default();
@@ -166,8 +166,8 @@ static int jets(work *w)
             study_complete(&c, "thesis");
             if ((status = study_need(&w->s, &c, value, w->message, sizeof w->message)) <= 0) return status;
             say(w, "| %g um at %g m/s | %s | %.3g/%.3g | %.2f | %.2f | %.1f | %.2f | %.2f | %.3f | %.0f |\n", size[k],
-                speed[k], said[k], c.cell, c.spacing, value[STUDY_RIM], 100 * value[STUDY_SHEARED], 100 * value[STUDY_EJECTED],
-                value[STUDY_V_LATE], value[STUDY_PBCP], value[STUDY_FLATTENING], value[STUDY_CPU]);
+                speed[k], said[k], c.cell, c.spacing, value[STUDY_RIM], 100 * value[STUDY_SHEARED],
+                100 * value[STUDY_EJECTED], value[STUDY_V_LATE], value[STUDY_PBCP], value[STUDY_FLATTENING], value[STUDY_CPU]);
         }
     say(w, "\nAt 0.7/0.175 um, by `make impacts`: [38 um](data/jet_38.png), [45 um](data/jet_45.png).\n\n");
     return 1;
@@ -292,8 +292,8 @@ static int calibrations(work *w)
            "PBCP and restitution tolerances of its Table 5.2 for the grid. The fits have a ridge of 1e-4: separable "
            "classes leave the boundary open without one.\n\n"
            "| cell/spacing, um | rule | runs | on the wrong side, 14, 30 um | highest Gdot_c that bonds 14, 30 um at "
-           "G_c 1057 | 2236 | 4729 | crossings: G_c, Gdot_c | G_c with ridge 1e-3; 1e-5; 1e-6 | pairs run at both: only 14 um bonds, only 30 um "
-           "|\n|---|---|---|---|---|---|---|---|---|---|\n", 100 * (pow(20, 1.0 / 16) - 1));
+           "G_c 1057 | 2236 | 4729 | crossings: G_c, Gdot_c | G_c with ridge 1e-3; 1e-5; 1e-6 | pairs run at both: "
+           "only 14 um bonds, only 30 um |\n|---|---|---|---|---|---|---|---|---|---|\n", 100 * (pow(20, 1.0 / 16) - 1));
     if ((status = calibration_rows(w, &t, count, range, crossed)) <= 0) {
         mpm_io_csv_drop(&t);
         return status;
@@ -428,13 +428,14 @@ static double read_summary(const char *folder, const char *key)
     return at ? strtod(at, NULL) : -1;
 }
 
-/* Two particles of 14 um, the second aside and its centre 30 um up: on which grid and how whole, by whose normals
-   (words of normal_of), on which budgets (bits). */
-typedef struct two_run {
+/* Two particles of 14 um, the second aside and its centre 30 um up: on which grid and how whole, by whose normals, with
+   which pair, at which offsets and on which budgets (bits). */
+typedef struct two_runs {
     grid g;
     const char *geometry, *symmetry;
-    int offset, normal, budgets; /* offset, normal: their numbers below */
-} two_run;
+    int normal, pair;     /* their numbers */
+    int offsets, budgets; /* bits */
+} two_runs;
 
 #define OFFSETS 4
 static const double two_offset[OFFSETS] = {0, 2.5, 5, 7.5};
@@ -444,35 +445,32 @@ static const double two_offset[OFFSETS] = {0, 2.5, 5, 7.5};
 enum { BY_TOP, BY_BOTTOM, BY_BOTH };
 static const char *const normal_of[3] = {"top", "bottom", "both"};
 
-#define TWO_RUNS 25
-static const two_run two_runs[TWO_RUNS] = {
-    {{1.5, 0.5}, "3d", "half", 0, BY_TOP, 1 << QUICK},      {{1.5, 0.5}, "3d", "half", 1, BY_TOP, 1 << QUICK},
-    {{1.5, 0.5}, "3d", "half", 2, BY_TOP, 1 << QUICK},      {{1.5, 0.5}, "3d", "half", 3, BY_TOP, 1 << QUICK},
-    {{1.0, 0.35}, "3d", "half", 0, BY_TOP, 1 << DESK},      {{1.0, 0.35}, "3d", "half", 1, BY_TOP, 1 << DESK},
-    {{1.0, 0.35}, "3d", "half", 2, BY_TOP, 1 << DESK},      {{1.0, 0.35}, "3d", "half", 3, BY_TOP, 1 << DESK},
-    {{1.0, 0.35}, "3d", "half", 0, BY_BOTTOM, 1 << DESK},   {{1.0, 0.35}, "3d", "half", 1, BY_BOTTOM, 1 << DESK},
-    {{1.0, 0.35}, "3d", "half", 2, BY_BOTTOM, 1 << DESK},   {{1.0, 0.35}, "3d", "half", 3, BY_BOTTOM, 1 << DESK},
-    {{1.0, 0.35}, "3d", "half", 0, BY_BOTH, 1 << DESK},     {{1.0, 0.35}, "3d", "half", 1, BY_BOTH, 1 << DESK},
-    {{1.0, 0.35}, "3d", "half", 2, BY_BOTH, 1 << DESK},     {{1.0, 0.35}, "3d", "half", 3, BY_BOTH, 1 << DESK},
-    {{0.7, 0.175}, "3d", "quarter", 0, BY_TOP, 1 << DESK | 1 << FULL},
-    {{0.7, 0.175}, "3d", "half", 1, BY_TOP, 1 << FULL},     {{0.7, 0.175}, "3d", "half", 2, BY_TOP, 1 << FULL},
-    {{0.7, 0.175}, "3d", "half", 3, BY_TOP, 1 << DESK | 1 << FULL},
-    {{0.7, 0.175}, "3d", "quarter", 0, BY_BOTTOM, 1 << DESK | 1 << FULL},
-    {{0.7, 0.175}, "3d", "half", 1, BY_BOTTOM, 1 << FULL},  {{0.7, 0.175}, "3d", "half", 2, BY_BOTTOM, 1 << FULL},
-    {{0.7, 0.175}, "3d", "half", 3, BY_BOTTOM, 1 << DESK | 1 << FULL},
-    {{0.7, 0.175}, "axisymmetric", "quarter", 0, BY_TOP, 1 << QUICK | 1 << DESK | 1 << FULL}};
+#define TWO_SETS 10
+static const two_runs two_sets[TWO_SETS] = {
+    {{1.5, 0.5}, "3d", "half", BY_TOP, SOURCE_PAIR, 15, 1 << QUICK},
+    {{1.0, 0.35}, "3d", "half", BY_TOP, SOURCE_PAIR, 15, 1 << DESK},
+    {{1.0, 0.35}, "3d", "half", BY_BOTTOM, SOURCE_PAIR, 15, 1 << DESK},
+    {{1.0, 0.35}, "3d", "half", BY_BOTH, SOURCE_PAIR, 15, 1 << DESK},
+    {{0.7, 0.175}, "3d", "quarter", BY_TOP, SOURCE_PAIR, 1, 1 << DESK | 1 << FULL},
+    {{0.7, 0.175}, "3d", "half", BY_TOP, SOURCE_PAIR, 8, 1 << DESK},
+    {{0.7, 0.175}, "3d", "half", BY_TOP, SOURCE_PAIR, 14, 1 << FULL},
+    {{0.7, 0.175}, "3d", "quarter", BY_TOP, OWN_PAIR, 1, 1 << DESK | 1 << FULL},
+    {{0.7, 0.175}, "3d", "half", BY_TOP, OWN_PAIR, 8, 1 << DESK | 1 << FULL},
+    {{0.7, 0.175}, "axisymmetric", "quarter", BY_TOP, SOURCE_PAIR, 1, 1 << QUICK | 1 << DESK | 1 << FULL}};
 
-static void two_scene(particles_case *q, const two_run *r)
+static void two_scene(particles_case *q, const two_runs *r, int offset)
 {
     const int top = r->normal == BY_BOTTOM ? 0 : 1; /* the higher number leads */
     *q = particles_default(r->symmetry, "");
     q->base.geometry = r->geometry;
     q->base.cell = r->g.cell;
     q->base.spacing = r->g.spacing;
+    q->base.gc = pairs[r->pair].gc;
+    q->base.gdot = pairs[r->pair].gdot;
     if (r->normal == BY_BOTH) q->base.normal = "average";
     q->count = 2;
     q->center[1 - top][2] = q->base.diameter / 2;
-    q->center[top][0] = two_offset[r->offset];
+    q->center[top][0] = two_offset[offset];
     q->center[top][2] = 30;
 }
 
@@ -513,28 +511,29 @@ static int keep_picture(work *w, const particles_case *q, const char *folder, co
 }
 
 /* One scene: a row of the table and of the file. As study_need. */
-static int two_row(work *w, mpm_io_csv *t, const two_run *r)
+static int two_row(work *w, mpm_io_csv *t, const two_runs *r, int at)
 {
     static const double said[3][OFFSETS] = {{5.73, 5.47, 4.71, 3.91}, {2.02, 1.65, 6.06, 16.24},
                                             {1.24, 0.92, 0.94, -0.53}};
     static particles_case q;
-    const int rings = strcmp(r->geometry, "3d") != 0, at = r->offset, top = r->normal == BY_BOTTOM ? 0 : 1;
+    const int rings = strcmp(r->geometry, "3d") != 0, top = r->normal == BY_BOTTOM ? 0 : 1;
     particle_row row[2];
     pair_row both, base;
     char folder[MPM_IO_PATH], name[60], picture[64];
     int status;
-    two_scene(&q, r);
-    snprintf(name, sizeof name, "two_%s_%g_%g_by_%s", r->geometry, r->g.cell, two_offset[at], normal_of[r->normal]);
+    two_scene(&q, r, at);
+    snprintf(name, sizeof name, "two_%s_%g_%g_by_%s%s", r->geometry, r->g.cell, two_offset[at], normal_of[r->normal],
+             r->pair == OWN_PAIR ? "_own" : "");
     snprintf(folder, sizeof folder, "%s/%s", w->s.folder, name);
     if ((status = need_particles(w, &q, folder)) <= 0) return status;
     if (!read_particles(w, folder, row, 2)) return 0;
     both = read_pair(folder, 0, 1);
     base = read_pair(folder, 1 - top, 2);
-    say(w, "| %g | %.3g/%.3g%s | %s | %.2f | [%.2f](data/%s.png) | %.2f, %.2f | %d, %d | %.2f | %.2f | %.2f | %.2f | %s | %s "
-           "| %.0f |\n", two_offset[at], r->g.cell, r->g.spacing, rings ? ", axisymmetric" : "", normal_of[r->normal],
-        said[0][at], read_summary(folder, "pbcp_percent"), name, both.pbcp, base.pbcp, both.held,
-        base.held, said[1][at], row[top].v_z,
-        said[2][at], row[1 - top].v_z, row[top].fate, row[1 - top].fate, read_summary(folder, "cpu_seconds"));
+    say(w, "| %g | %.3g/%.3g%s%s | %s | %.2f | [%.2f](data/%s.png) | %.2f, %.2f | %d, %d | ", two_offset[at], r->g.cell,
+        r->g.spacing, rings ? ", axisymmetric" : "", r->pair == OWN_PAIR ? ", own pair" : "", normal_of[r->normal],
+        said[0][at], read_summary(folder, "pbcp_percent"), name, both.pbcp, base.pbcp, both.held, base.held);
+    say(w, "%.2f | %.2f | %.2f | %.2f | %s | %s | %.0f |\n", said[1][at], row[top].v_z, said[2][at], row[1 - top].v_z,
+        row[top].fate, row[1 - top].fate, read_summary(folder, "cpu_seconds"));
     mpm_io_csv_real(t, (mpm_real)two_offset[at]);
     mpm_io_csv_text(t, normal_of[r->normal]);
     mpm_io_csv_real(t, (mpm_real)read_summary(folder, "pbcp_percent"));
@@ -549,6 +548,8 @@ static int two_row(work *w, mpm_io_csv *t, const two_run *r)
     mpm_io_csv_real(t, (mpm_real)r->g.cell);
     mpm_io_csv_real(t, (mpm_real)r->g.spacing);
     mpm_io_csv_text(t, r->geometry);
+    mpm_io_csv_real(t, (mpm_real)q.base.gc);
+    mpm_io_csv_real(t, (mpm_real)q.base.gdot);
     snprintf(picture, sizeof picture, "%s.png", name);
     return keep_picture(w, &q, folder, picture);
 }
@@ -557,18 +558,23 @@ static int two_particles(work *w)
 {
     char path[MPM_IO_PATH];
     mpm_io_csv t;
-    int k, status = 1;
+    int k, at, status = 1;
     mpm_io_csv_begin(&t, data_file(w, "two_particles.csv", path, sizeof path),
                      "offset_um,normal_of,pbcp_percent,pbcp_top_bottom_percent,pbcp_bottom_substrate_percent,"
-                     "held_nodes_top_bottom,held_nodes_bottom_substrate,top_v_z_m_s,bottom_v_z_m_s,top,bottom,cell_um,spacing_um,geometry",
+                     "held_nodes_top_bottom,held_nodes_bottom_substrate,top_v_z_m_s,bottom_v_z_m_s,top,bottom,cell_um,"
+                     "spacing_um,geometry,gc,gdot",
                      "A-two", &w->fault);
     say(w, "### A-two: one particle on another\n\nTwo of 14 um at 810 m/s, 3D unless said, after 100 ns; velocities of "
-           "points up to 60 m/s, from the substrate's mean. Source A ran 0.7/0.175 in 3D.\n\n"
-           "| offset, um | cell/spacing, um | normals of | PBCP, %%: source A | here | between the two, bottom on "
-           "substrate | held nodes there | top v_z, m/s: source A | here | bottom v_z: source A | here | top | bottom | CPU s |\n"
+           "points up to 60 m/s, from the substrate's mean. Normals between the two: of the top particle, of the "
+           "bottom one, or of both averaged; source A's followed numbers given by chance. It ran 0.7/0.175 in 3D. Own "
+           "pair: as in A-crit.\n\n| offset, um | cell/spacing, um | normals of | PBCP, %%: source A | here | between "
+           "the two, bottom on substrate | held nodes there | top v_z, m/s: source A | here | bottom v_z: source A "
+           "| here | top | bottom | CPU s |\n"
            "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-    for (k = 0; k < TWO_RUNS && status > 0; k++)
-        if (two_runs[k].budgets & 1 << w->budget) status = two_row(w, &t, &two_runs[k]);
+    for (k = 0; k < TWO_SETS; k++)
+        for (at = 0; at < OFFSETS && status > 0; at++)
+            if (two_sets[k].budgets & 1 << w->budget && two_sets[k].offsets & 1 << at)
+                status = two_row(w, &t, &two_sets[k], at);
     if (status <= 0) {
         mpm_io_csv_drop(&t);
         return status;

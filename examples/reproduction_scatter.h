@@ -121,8 +121,8 @@ static inline int scatter(work *w)
     char path[MPM_IO_PATH];
     mpm_io_csv t;
     int k, status;
-    say(w, "### Where the scatter comes from\n\n14 um at 810 m/s, %s um, axisymmetric, by the position of the grid: the "
-           "rebound without bond, and with it mean D of the contacted points, PBCP, and the rebound; the critical "
+    say(w, "### Where the scatter comes from\n\n14 um at 810 m/s, %s um, axisymmetric, by the position of the grid: "
+           "the rebound without bond, and with it mean D of the contacted points, PBCP, and the rebound; the critical "
            "velocity; and how the contact begins: the mean gap between the surfaces at the outer half of the "
            "particle's contacted points, and the mean D of all of them. A node is felt a cell away: the higher the "
            "highest plane that the substrate's top reaches, the wider the gap across which it slows the particle, and "
@@ -193,9 +193,9 @@ static inline int steep_fall(work *w)
     int k, i, status;
     w->s.early = 1;
     w->s.planned = w->s.done + 6 * 16 * critical_cost(&range);
-    say(w, "### The fall with size\n\nRule \"thesis\", source A's pair, axisymmetric: both sizes on one grid as in A-crit; "
-           "30 um on a grid as much coarser as it is larger; and so, with the energy rule's length left that of the "
-           "small cell, where only the rate of straining tells the sizes apart.\n\n"
+    say(w, "### The fall with size\n\nRule \"thesis\", source A's pair, axisymmetric: both sizes on one grid as in "
+           "A-crit; 30 um on a grid as much coarser as it is larger; and so, with the energy rule's length left that "
+           "of the small cell, where only the rate of straining tells the sizes apart.\n\n"
            "| 30 um has | 14 um: cell/spacing, um | median, m/s | lowest - highest | 30 um: cell/spacing, um "
            "| DCell, um | median, m/s | lowest - highest | fall, m/s |\n|---|---|---|---|---|---|---|---|---|\n");
     for (k = 0; k < (int)(sizeof row / sizeof row[0]); k++) {

@@ -20,7 +20,7 @@ int main(int argc, char **argv)
     option_add(o, &n, "offset", OPTION_REAL, &offset, "of the second particle along x, at the start, um");
     option_add(o, &n, "height", OPTION_REAL, &height, "of its centre over the substrate, at the start, um");
     option_add(o, &n, "leads", OPTION_TEXT, &leads,
-               "whose surface sets the (ranked) normal between the two: top|bottom; that one is number 1 in the report");
+               "whose surface sets the (ranked) normal between the two, and is number 1 in the report: top|bottom");
     parsed = options_parse(argc, argv, "Two particles, one after the other, on one spot or beside it.\n"
                            "Writes particles.csv, pairs.csv, summary.json, particles.pvd (ParaView) and frames;\n"
                            "run again with the same options after an interruption, it goes on; a finished scene\n"

@@ -4,6 +4,8 @@
 #include "scene.h"
 #include "check.h"
 
+#include <float.h>
+
 static const double eps = (double)MPM_EPSILON;
 
 static void growth(void)
@@ -34,6 +36,71 @@ static void growth(void)
     CHECK_EQUAL("no rule", mpm_bond_check(&b, NULL), MPM_OK);
     b.average = (mpm_bond_average)(MPM_BOND_LITERAL + 1);
     CHECK_EQUAL("no such average", mpm_bond_check(&b, NULL), MPM_ERR_ARGUMENT);
+}
+
+static mpm_real never_asked(void *context, const mpm_world *w, int32_t point, mpm_real dt)
+{
+    (void)context;
+    (void)w;
+    (void)point;
+    return dt;
+}
+
+/* The check fails with this status and names this field and its value. */
+static void names(const mpm_bond *b, mpm_status status, const char *field, mpm_real value)
+{
+    mpm_fault f;
+    memset(&f, 0, sizeof f);
+    CHECK_EQUAL(field, mpm_bond_check(b, &f), status);
+    CHECK_TRUE("... named, with its value",
+               f.status == status && f.field && !strcmp(f.field, field) &&
+                   (isnan((double)value) ? isnan((double)f.value) : f.value >= value && f.value <= value));
+}
+
+static void faults(void)
+{
+    static const char *const name[4] = {"bond critical", "bond critical_rate", "bond floor", "bond length"};
+    mpm_units u = mpm_units_um_us_ng();
+    mpm_bond b;
+    mpm_fault f;
+    int k, rule;
+    for (rule = MPM_BOND_ENERGY; rule <= MPM_BOND_STRAIN; rule++)
+        for (k = 0; k < 4; k++) {
+            mpm_real *field[4];
+            field[0] = &b.critical;
+            field[1] = &b.critical_rate;
+            field[2] = &b.floor;
+            field[3] = &b.length;
+            b = mpm_bond_default(&u);
+            b.rule = (mpm_bond_rule)rule;
+            CHECK_EQUAL("source A's pair", mpm_bond_check(&b, &f), MPM_OK);
+            *field[k] = MPM_R(-2.5);
+            names(&b, MPM_ERR_ARGUMENT, name[k], MPM_R(-2.5));
+            *field[k] = (mpm_real)nan("");
+            names(&b, MPM_ERR_NAN, name[k], (mpm_real)nan(""));
+            *field[k] = (mpm_real)HUGE_VAL;
+            names(&b, MPM_ERR_NAN, name[k], (mpm_real)HUGE_VAL);
+            *field[k] = 0;
+            if (k < 3) names(&b, MPM_ERR_ARGUMENT, name[k], 0);
+            else CHECK_EQUAL("a length of 0 is the cell's", mpm_bond_check(&b, &f), MPM_OK);
+        }
+    b = mpm_bond_default(&u);
+    b.partner = -2;
+    names(&b, MPM_ERR_ARGUMENT, "bond partner", -2);
+    b.partner = MPM_USER_FIELDS - 1;
+    CHECK_EQUAL("the last user field", mpm_bond_check(&b, &f), MPM_OK);
+    b.average = (mpm_bond_average)(MPM_BOND_LITERAL + 1);
+    names(&b, MPM_ERR_ARGUMENT, "bond average", (mpm_real)(MPM_BOND_LITERAL + 1));
+    b.rule = (mpm_bond_rule)(MPM_BOND_USER + 1);
+    names(&b, MPM_ERR_ARGUMENT, "bond rule", (mpm_real)(MPM_BOND_USER + 1));
+    b = mpm_bond_default(&u);
+    b.rule = MPM_BOND_USER;
+    names(&b, MPM_ERR_ARGUMENT, "bond grow", 0);
+    b.grow = never_asked;
+    b.critical = b.critical_rate = b.floor = b.length = -1;
+    CHECK_EQUAL("a rule of one's own has other constants", mpm_bond_check(&b, &f), MPM_OK);
+    b.rule = MPM_BOND_NONE;
+    CHECK_EQUAL("no rule has none", mpm_bond_check(&b, &f), MPM_OK);
 }
 
 /* A ball on a slab, D set by hand: the three averages (A 4.6, 4.7). */
@@ -369,6 +436,7 @@ static void splats(void)
     mpm_body_add(&w, &slab);
     s = mpm_splat_measure(&w, 0, 1, 60);
     CHECK_RELATIVE("a cube as it was: height", s.height, 4, 8 * eps);
+    CHECK_RELATIVE("... top", s.top, 4, 8 * eps);
     CHECK_NEAR("... compression", s.compression, 0, 8 * eps);
     CHECK_NEAR("... crater", s.crater, 0, 16 * eps);
     for (i = 0; i < w.body[0].count; i++) { /* three quarters of the height, twice the width */
@@ -385,6 +453,7 @@ static void splats(void)
     }
     s = mpm_splat_measure(&w, 0, 1, 60);
     CHECK_RELATIVE("height: 0.75 * 3.5 + 0.5", s.height, 3.125, 16 * eps);
+    CHECK_RELATIVE("top: 0.75 * 3.75 + 0.25, the ejected point left out", s.top, 3.0625, 16 * eps);
     CHECK_RELATIVE("compression", s.compression, 1 - 3.125 / 4, 64 * eps);
     CHECK_RELATIVE("width: 2 * 3.5 + 0.5, twice the lattice's", s.width, 7.5, 16 * eps);
     CHECK_RELATIVE("flattening", s.flattening, 7.5 / 4, 16 * eps);
@@ -451,9 +520,104 @@ static void measures(void)
     mpm_free(&w);
 }
 
+/* Four fifths of the mass at 10, one fifth at 15: mean 11, standard deviation 5 sqrt(4/5 1/5) = 2. All sums are
+   double. The variance 4 is a difference of two squares, 125 - 121, each from sums of 512 terms: it is known to
+   512 * 1.1e-16 * (2 * 125 + 4 * 121), the deviation to 5e-12 of itself. */
+static void noise(void)
+{
+    mpm_units u = mpm_units_um_us_ng();
+    mpm_material m = scene_metal(1, u);
+    mpm_desc d = scene_grid(1, 12, 12, 12, -6, -6, -6);
+    mpm_body_desc ball = scene_body(&m, mpm_box(-2, -2, 0, 2, 2, 4), 0.5, 12);
+    mpm_body_desc slab = scene_body(&m, mpm_box(-5, -5, -4, 5, 5, 0), 0.5, 2);
+    mpm_rebound r;
+    mpm_world w;
+    int32_t i;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &ball);
+    mpm_body_add(&w, &slab);
+    r = mpm_restitution(&w, 0, 60);
+    CHECK_NEAR("all points move alike: no noise", r.noise, 0, 12 * sqrt(1024 * DBL_EPSILON));
+    for (i = 0; i < w.body[0].count; i++) {
+        w.points.v[2][i] = i % 2 ? 15 : 10;
+        if (i % 2 == 0) w.points.mass[i] *= 4;
+    }
+    r = mpm_restitution(&w, 0, 60);
+    CHECK_RELATIVE("two velocities: mean by mass", r.filtered, 11, 1e-12);
+    CHECK_RELATIVE("... standard deviation by mass", r.noise, 2, 1e-11);
+    w.points.v[2][0] = w.points.v[2][1] = 71; /* one of each is ejected: the rest in the same proportion */
+    r = mpm_restitution(&w, 0, 60);
+    CHECK_RELATIVE("... without what was ejected", r.noise, 2, 1e-11);
+    CHECK_RELATIVE("... which counts in the mean: 60 more in 1 of 256", r.mean, 11 + 60.0 / 256, 1e-12);
+    r = mpm_restitution_from(&w, 0, 1, 60);
+    CHECK_RELATIVE("... and the same from the moving slab", r.noise, 2, 1e-11);
+    mpm_free(&w);
+}
+
+/* Mass of the surface points of a body inside a radius whose D is at least that. */
+static double mass_of(const mpm_world *w, int32_t body, double radius, double least)
+{
+    const mpm_points *p = &w->points;
+    double sum = 0;
+    int32_t i;
+    for (i = w->body[body].first; i < w->body[body].first + w->body[body].count; i++)
+        if ((p->flags[i] & MPM_SURFACE) && (double)p->x[0][i] < radius && (double)p->bond[i] >= least)
+            sum += (double)p->mass[i];
+    return sum;
+}
+
+/* Rings, which weigh more outside: a disc of radius 2 bonded all over its face and in contact one layer above, on a
+   slab bonded up to radius 1, in contact up to 2, and from there to 3 bonded to a body that is neither. */
+static void masses(void)
+{
+    mpm_units u = mpm_units_um_us_ng();
+    mpm_material m = scene_metal(1, u);
+    mpm_desc d = scene_grid(1, 8, 8, 12, 0, 0, -6);
+    mpm_body_desc disc = scene_body(&m, mpm_cylinder(0, 0, 0, 2, 4), 0.5, 0);
+    mpm_body_desc slab = scene_body(&m, mpm_cylinder(0, 0, -4, 6, 4), 0.5, 0);
+    const double layer = 0.5 * 3.14159265358979 * (double)m.density; /* of radius 1, a spacing thick */
+    mpm_bond b = mpm_bond_default(&u);
+    mpm_bond_measure one, two, all, pair;
+    mpm_world w;
+    int32_t i;
+    d.geometry = MPM_AXISYMMETRIC;
+    d.side[0] = MPM_SIDE_SYMMETRY;
+    d.user_fields = 1;
+    b.partner = 0;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &disc);
+    mpm_body_add(&w, &slab);
+    for (i = 0; i < w.points.count; i++) {
+        const double x = (double)w.points.x[0][i], z = (double)w.points.x[2][i];
+        if (i < w.body[1].first) w.points.bond[i] = z < 0.5 ? 1 : z < 1 ? MPM_R(0.5) : 0;
+        else if (z > -0.5) w.points.bond[i] = x < 1 ? 1 : x < 2 ? MPM_R(0.5) : x < 3 ? 2 : 0;
+        w.points.user[0][i] = i < w.body[1].first ? 2 : x < 2 ? 1 : 3;
+    }
+    one = mpm_bond_measure_body(&w, 0);
+    two = mpm_bond_measure_body(&w, 1);
+    all = mpm_bond_measure_body(&w, -1);
+    CHECK_EQUAL("mass of a pair", mpm_bond_measure_pair(&b, &w, 0, 1, &pair), MPM_OK);
+    CHECK_RELATIVE("mass bonded: the face of a disc", one.bonded_mass, 4 * layer, 64 * eps);
+    CHECK_RELATIVE("... and of the slab", two.bonded_mass, (1 + 9 - 4) * layer, 64 * eps);
+    CHECK_RELATIVE("... of the pair", pair.bonded_mass, (4 + 1) * layer, 64 * eps);
+    CHECK_RELATIVE("... by points: disc", one.bonded_mass, mass_of(&w, 0, 9, 1), 1e-13);
+    CHECK_RELATIVE("... slab", two.bonded_mass, mass_of(&w, 1, 9, 1), 1e-13);
+    CHECK_RELATIVE("... all", all.bonded_mass, mass_of(&w, 0, 9, 1) + mass_of(&w, 1, 9, 1), 1e-13);
+    CHECK_RELATIVE("... pair", pair.bonded_mass, mass_of(&w, 0, 9, 1) + mass_of(&w, 1, 2, 1), 1e-13);
+    CHECK_TRUE("mass in contact: the wall's next layer too, not what is inside",
+               one.contacted_mass > 4.1 * layer && one.contacted_mass < 7.9 * layer);
+    CHECK_RELATIVE("... the face of the slab", two.contacted_mass, 9 * layer, 64 * eps);
+    CHECK_RELATIVE("... by points: disc", one.contacted_mass, mass_of(&w, 0, 9, 0.5), 1e-13);
+    CHECK_RELATIVE("... slab", two.contacted_mass, mass_of(&w, 1, 9, 0.5), 1e-13);
+    CHECK_RELATIVE("... all", all.contacted_mass, mass_of(&w, 0, 9, 0.5) + mass_of(&w, 1, 9, 0.5), 1e-13);
+    CHECK_RELATIVE("... pair", pair.contacted_mass, mass_of(&w, 0, 9, 0.5) + mass_of(&w, 1, 2, 0.5), 1e-13);
+    mpm_free(&w);
+}
+
 int main(void)
 {
     growth();
+    faults();
     averages();
     rules();
     interface();
@@ -463,5 +627,7 @@ int main(void)
     splats();
     literature();
     measures();
+    noise();
+    masses();
     return check_end();
 }

@@ -40,7 +40,6 @@ static int convergence_row(work *w, mpm_io_csv *t, grid g, double low[2][2], dou
         mpm_io_csv_text(t, mapping[k]);
         mpm_io_csv_real(t, (mpm_real)value[k][STUDY_EPS]);
         mpm_io_csv_real(t, (mpm_real)value[k][STUDY_WORK]);
-        mpm_io_csv_real(t, (mpm_real)value[k][STUDY_FLATTENING]);
         mpm_io_csv_integer(t, (long)value[k][STUDY_POINTS]);
         mpm_io_csv_integer(t, (long)value[k][STUDY_STEPS]);
     }
@@ -61,7 +60,7 @@ static int convergence(work *w)
     w->s.early = 0;
     w->s.planned = w->s.done + 2 * count;
     mpm_io_csv_begin(&t, data_file(w, "convergence.csv", path, sizeof path),
-                     "cell_um,spacing_um,return_mapping,eps_mean,plastic_energy_density_MPa,flattening,points,steps",
+                     "cell_um,spacing_um,return_mapping,eps_mean,plastic_energy_density_MPa,points,steps",
                      "A-conv", &w->fault);
     say(w, "### A-conv: grids without bonding\n\n14 um at 810 m/s, frictionless, no bond, axisymmetric, time step "
            "factor 0.05, after 80 ns; with the consistent return mapping and with that of source A's appendix. Source "
@@ -167,7 +166,8 @@ static int jets(work *w)
             if ((status = study_need(&w->s, &c, value, w->message, sizeof w->message)) <= 0) return status;
             say(w, "| %g um at %g m/s | %s | %.3g/%.3g | %.2f | %.2f | %.1f | %.2f | %.2f | %.3f | %.0f |\n", size[k],
                 speed[k], said[k], c.cell, c.spacing, value[STUDY_RIM], 100 * value[STUDY_SHEARED],
-                100 * value[STUDY_EJECTED], value[STUDY_V_LATE], value[STUDY_PBCP], value[STUDY_FLATTENING], value[STUDY_CPU]);
+                100 * value[STUDY_EJECTED], value[STUDY_V_LATE], value[STUDY_PBCP], value[STUDY_FLATTENING],
+                value[STUDY_CPU]);
         }
     say(w, "\nAt 0.7/0.175 um, by `make impacts`: [38 um](data/jet_38.png), [45 um](data/jet_45.png).\n\n");
     return 1;
@@ -293,7 +293,8 @@ static int calibrations(work *w)
            "classes leave the boundary open without one.\n\n"
            "| cell/spacing, um | rule | runs | on the wrong side, 14, 30 um | highest Gdot_c that bonds 14, 30 um at "
            "G_c 1057 | 2236 | 4729 | crossings: G_c, Gdot_c | G_c with ridge 1e-3; 1e-5; 1e-6 | pairs run at both: "
-           "only 14 um bonds, only 30 um |\n|---|---|---|---|---|---|---|---|---|---|\n", 100 * (pow(20, 1.0 / 16) - 1));
+           "only 14 um bonds, only 30 um |\n|---|---|---|---|---|---|---|---|---|---|\n",
+        100 * (pow(20, 1.0 / 16) - 1));
     if ((status = calibration_rows(w, &t, count, range, crossed)) <= 0) {
         mpm_io_csv_drop(&t);
         return status;

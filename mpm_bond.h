@@ -242,7 +242,7 @@ MPM_API mpm_interface mpm_bond_interface(const mpm_world *w, int32_t a, int32_t 
 typedef struct mpm_rebound {
     double filtered;     /* mass-weighted mean v_z of points with |v| <= filter [length/time] */
     double mean;         /* mass-weighted mean v_z */
-    double noise;        /* standard deviation of v_z about the filtered mean */
+    double noise;        /* standard deviation of v_z of the points up to the filter */
     long ejected;        /* points with |v| > filter */
     double ejected_mass;
 } mpm_rebound;

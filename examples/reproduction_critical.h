@@ -289,15 +289,15 @@ static inline int critical(work *w)
     say(w, "### A-crit: critical velocity\n\nG_c 1503.74 J/m2, Gdot_c 2.271e5 J/(m2 us), as source A, and an own pair, "
            "%.2f and %.4g, at which both sizes of A-cal just bond at 0.7/0.175 um, the interface on a grid plane; "
            "axisymmetric unless 3D is said, time step factor 0.2. Median and extremes over so many positions of the "
-           "grid in the cell of the lowest velocity that bonds, between %.0f and %.0f m/s to %.0f m/s (3D at the desk "
-           "budget: one position, halved between 600 and 1000 m/s). Rule \"thesis\": PBCP at least 5.0 %% and rebound "
-           "at most 0.6 m/s, 4.8 %% and 0.9 m/s at 14 um, relative to the substrate; \"stays\": late mean velocity "
-           "under 2 m/s and the bond at work. \"Not above\": tested velocities above the critical one that do not "
+           "grid in the cell of the lowest velocity found to bond, by steps of %.0f between %.0f and %.0f m/s and "
+           "halving to %.0f m/s (3D at the desk budget: one position, halved between 600 and 1000 m/s). Rule "
+           "\"thesis\": PBCP at least 5.0 %% and rebound at most 0.6 m/s, 4.8 %% and 0.9 m/s at 14 um, relative to the "
+           "substrate; \"stays\": late mean velocity under 2 m/s and the bond at work. \"Not above\": tested velocities above the critical one that do not "
            "bond, all positions together. \"On the plane\": the interface on a grid plane. Source A ran one position, "
            "not stated, at 0.7/0.175. Experiment: 810 m/s (14 um), 770 (30 um).\n\n"
            "| um | rule | cell/spacing, substrate, um | positions | source A | here | lowest - highest | difference "
            "| on the plane | PBCP, %% | not above | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-        pairs[OWN_PAIR].gc, pairs[OWN_PAIR].gdot, range.low, range.high, range.step);
+        pairs[OWN_PAIR].gc, pairs[OWN_PAIR].gdot, range.scan, range.low, range.high, range.step);
     status = critical_rows(w, &t, setting, &count, size);
     if (status <= 0) {
         mpm_io_csv_drop(&t);

@@ -293,8 +293,8 @@ static inline int critical(work *w)
            "halving to %.0f m/s (3D at the desk budget: one position, halved between 600 and 1000 m/s). Rule "
            "\"thesis\": PBCP at least 5.0 %% and rebound at most 0.6 m/s, 4.8 %% and 0.9 m/s at 14 um, relative to the "
            "substrate; \"stays\": late mean velocity under 2 m/s and the bond at work. \"Not above\": tested "
-           "velocities above the critical one that do not bond, all positions together. \"On the plane\": the interface "
-           "on a grid plane. Source A ran one position, not stated, at 0.7/0.175. Experiment: 810 m/s (14 um), 770 "
+           "velocities above the critical one that do not bond, all positions together. \"On the plane\": the "
+           "interface on a grid plane. Source A ran one position, not stated, at 0.7/0.175. Experiment: 810 m/s (14 um), 770 "
            "(30 um).\n\n"
            "| um | rule | cell/spacing, substrate, um | positions | source A | here | lowest - highest | difference "
            "| on the plane | PBCP, %% | not above | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",

@@ -380,7 +380,8 @@ typedef struct particle_row {
     double pbcp, v_z, v_along, ejected;
 } particle_row;
 
-/* Reads the report of a finished scene of `count` particles. Returns 1, or 0 with a message. */
+/* Reads the report of a finished scene of `count` particles; that of its pairs must be there too. Returns 1, or 0 with a
+   message. */
 static int read_particles(work *w, const char *folder, particle_row *row, int count)
 {
     char path[MPM_IO_PATH], line[400];
@@ -391,9 +392,14 @@ static int read_particles(work *w, const char *folder, particle_row *row, int co
                    &row[n].v_z, &row[n].v_along, &row[n].ejected) == 6)
             n++;
     if (f) fclose(f);
-    if (n == count) return 1;
-    snprintf(w->message, sizeof w->message, "%.300s has not %d rows", path, count);
-    return 0;
+    if (n != count) {
+        snprintf(w->message, sizeof w->message, "%.300s has not %d rows", path, count);
+        return 0;
+    }
+    f = fopen(file_in(folder, "pairs.csv", path, sizeof path), "rb"); /* for read_pair */
+    if (!f) snprintf(w->message, sizeof w->message, "%.300s cannot be read", path);
+    else fclose(f);
+    return f != NULL;
 }
 
 /* A pair of bodies of a finished scene. */

@@ -380,8 +380,8 @@ typedef struct particle_row {
     double pbcp, v_z, v_along, ejected;
 } particle_row;
 
-/* Reads the report of a finished scene of `count` particles; that of its pairs must be there too. Returns 1, or 0 with a
-   message. */
+/* Reads the report of a finished scene of `count` particles; that of its pairs must be there too. Returns 1, or 0
+   with a message. */
 static int read_particles(work *w, const char *folder, particle_row *row, int count)
 {
     char path[MPM_IO_PATH], line[400];

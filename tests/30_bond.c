@@ -419,21 +419,26 @@ static void partners(void)
     mpm_free(&w);
 }
 
-/* A ball of 4 um on a slab of which points are moved by hand. */
+/* A cube of 4 um at 12 on a slab. */
+static void cube_on_slab(mpm_world *w, mpm_material *m)
+{
+    const mpm_desc d = scene_grid(1, 12, 12, 12, -6, -6, -6);
+    const mpm_body_desc cube = scene_body(m, mpm_box(-2, -2, 0, 2, 2, 4), 0.5, 12);
+    const mpm_body_desc slab = scene_body(m, mpm_box(-5, -5, -4, 5, 5, 0), 0.5, 2);
+    mpm_init(w, &d, NULL, 0);
+    mpm_body_add(w, &cube);
+    mpm_body_add(w, &slab);
+}
+
+/* The cube on the slab, of which points are moved by hand. */
 static void splats(void)
 {
-    mpm_units u = mpm_units_um_us_ng();
-    mpm_material m = scene_metal(1, u);
-    mpm_desc d = scene_grid(1, 12, 12, 12, -6, -6, -6);
-    mpm_body_desc ball = scene_body(&m, mpm_box(-2, -2, 0, 2, 2, 4), 0.5, 12);
-    mpm_body_desc slab = scene_body(&m, mpm_box(-5, -5, -4, 5, 5, 0), 0.5, 2);
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
     mpm_rebound r;
     mpm_splat s;
     mpm_world w;
     int32_t i;
-    mpm_init(&w, &d, NULL, 0);
-    mpm_body_add(&w, &ball);
-    mpm_body_add(&w, &slab);
+    cube_on_slab(&w, &m);
     s = mpm_splat_measure(&w, 0, 1, 60);
     CHECK_RELATIVE("a cube as it was: height", s.height, 4, 8 * eps);
     CHECK_RELATIVE("... top", s.top, 4, 8 * eps);
@@ -525,17 +530,11 @@ static void measures(void)
    512 * 1.1e-16 * (2 * 125 + 4 * 121), the deviation to 5e-12 of itself. */
 static void noise(void)
 {
-    mpm_units u = mpm_units_um_us_ng();
-    mpm_material m = scene_metal(1, u);
-    mpm_desc d = scene_grid(1, 12, 12, 12, -6, -6, -6);
-    mpm_body_desc ball = scene_body(&m, mpm_box(-2, -2, 0, 2, 2, 4), 0.5, 12);
-    mpm_body_desc slab = scene_body(&m, mpm_box(-5, -5, -4, 5, 5, 0), 0.5, 2);
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
     mpm_rebound r;
     mpm_world w;
     int32_t i;
-    mpm_init(&w, &d, NULL, 0);
-    mpm_body_add(&w, &ball);
-    mpm_body_add(&w, &slab);
+    cube_on_slab(&w, &m);
     r = mpm_restitution(&w, 0, 60);
     CHECK_NEAR("all points move alike: no noise", r.noise, 0, 12 * sqrt(1024 * DBL_EPSILON));
     for (i = 0; i < w.body[0].count; i++) {

@@ -294,8 +294,8 @@ static inline int critical(work *w)
            "\"thesis\": PBCP at least 5.0 %% and rebound at most 0.6 m/s, 4.8 %% and 0.9 m/s at 14 um, relative to the "
            "substrate; \"stays\": late mean velocity under 2 m/s and the bond at work. \"Not above\": tested "
            "velocities above the critical one that do not bond, all positions together. \"On the plane\": the "
-           "interface on a grid plane. Source A ran one position, not stated, at 0.7/0.175. Experiment: 810 (14 um), 770 "
-           "(30 um) m/s.\n\n"
+           "interface on a grid plane. Source A ran one position, not stated, at 0.7/0.175. Experiment: 810 m/s "
+           "(14 um), 770 (30 um).\n\n"
            "| um | rule | cell/spacing, substrate, um | positions | source A | here | lowest - highest | difference "
            "| on the plane | PBCP, %% | not above | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
         pairs[OWN_PAIR].gc, pairs[OWN_PAIR].gdot, range.scan, range.low, range.high, range.step);

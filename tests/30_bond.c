@@ -420,7 +420,7 @@ static void partners(void)
 }
 
 /* A cube of 4 um at 12 on a slab. */
-static void cube_on_slab(mpm_world *w, mpm_material *m)
+static void splat_scene(mpm_world *w, mpm_material *m)
 {
     const mpm_desc d = scene_grid(1, 12, 12, 12, -6, -6, -6);
     const mpm_body_desc cube = scene_body(m, mpm_box(-2, -2, 0, 2, 2, 4), 0.5, 12);
@@ -438,7 +438,7 @@ static void splats(void)
     mpm_splat s;
     mpm_world w;
     int32_t i;
-    cube_on_slab(&w, &m);
+    splat_scene(&w, &m);
     s = mpm_splat_measure(&w, 0, 1, 60);
     CHECK_RELATIVE("a cube as it was: height", s.height, 4, 8 * eps);
     CHECK_RELATIVE("... top", s.top, 4, 8 * eps);
@@ -534,7 +534,7 @@ static void noise(void)
     mpm_rebound r;
     mpm_world w;
     int32_t i;
-    cube_on_slab(&w, &m);
+    splat_scene(&w, &m);
     r = mpm_restitution(&w, 0, 60);
     CHECK_NEAR("all points move alike: no noise", r.noise, 0, 12 * sqrt(1024 * DBL_EPSILON));
     for (i = 0; i < w.body[0].count; i++) {

@@ -112,7 +112,7 @@ static const critical_setting settings[SETTINGS] = {
     {0.7, 0.175, OWN_PAIR, "axisymmetric", "thesis", "0.7/0.175, own pair", {8, 4, 4, 4, 4}, 1 << DESK},
     {0.7, 0.175, SOURCE_PAIR, "axisymmetric", "thesis", "0.7/0.175", {8, 8, 8, 8, 8}, 1 << FULL},
     {0.7, 0.175, OWN_PAIR, "axisymmetric", "thesis", "0.7/0.175, own pair", {8, 8, 8, 8, 8}, 1 << FULL},
-    {1.0, 0.25, SOURCE_PAIR, "axisymmetric", "large", "1/0.25, large substrate", {8, 0, 0, 0, 4}, 1 << DESK},
+    {1.0, 0.25, SOURCE_PAIR, "axisymmetric", "large", "1/0.25, large substrate", {8, 0, 0, 0, 2}, 1 << DESK},
     {1.0, 0.25, SOURCE_PAIR, "axisymmetric", "large", "1/0.25, large substrate", {8, 8, 8, 8, 8}, 1 << FULL},
     {0.7, 0.175, SOURCE_PAIR, "3d", "thesis", "0.7/0.175, 3D", {1, 0, 0, 0, 0}, 1 << DESK},
     {0.7, 0.175, SOURCE_PAIR, "3d", "thesis", "0.7/0.175, 3D", {8, 8, 8, 8, 8}, 1 << FULL}};

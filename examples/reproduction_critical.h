@@ -219,7 +219,7 @@ static inline int critical_plot(work *w, const critical_line *ours, int count)
 {
     static const mpm_real two_sizes[2] = {14, 30}, measured[2] = {810, 770};
     mpm_real x[SIZES], said[SIZES];
-    mpm_io_curve line[SETTINGS + 2];
+    mpm_io_curve line[SETTINGS + 3];
     mpm_io_plot_desc d = mpm_io_plot_desc_default();
     char path[MPM_IO_PATH];
     int k;
@@ -239,30 +239,38 @@ static inline int critical_plot(work *w, const critical_line *ours, int count)
     }
     d.curves = line;
     d.curve_count = count + 2;
-    d.title = "critical velocity, rule of source A, median";
+    d.title = "critical velocity, rule of source A, median over grid positions";
+    d.window[2] = 500; /* with room for the legend */
+    d.window[3] = 1150;
     d.x_label = "particle diameter, um";
     d.y_label = "m/s";
     return study_plots(data_file(w, "critical_velocity.png", path, sizeof path), &d, 1, 1, "A-crit", &w->fault) ||
            failed(w);
 }
 
-/* The table, and the curves of both pictures: by setting over size, and of the first setting by size over the
-   position of the grid. As study_need. */
+/* The table, and the curves of both pictures: by setting over size (medians; the last one the own pair's on a grid
+   plane), and of the first setting by size over the position of the grid. As study_need. */
 static inline int critical_rows(work *w, mpm_io_csv *t, critical_line *setting, int *count, critical_line *size)
 {
+    static critical_line plane; /* the own pair's, with the interface on a grid plane */
     critical_outcome out;
     int g, r, k, i, status;
     *count = 0;
+    plane.count = 0;
     for (g = 0; g < SETTINGS; g++) {
         if (!(settings[g].budgets & 1 << w->budget)) continue;
         setting[*count].count = 0;
-        snprintf(setting[*count].name, sizeof setting[*count].name, "here, %s", settings[g].name);
+        snprintf(setting[*count].name, sizeof setting[*count].name, "%s", settings[g].name);
         for (r = 0; r < 2; r++)
             for (k = 0; k < SIZES; k++) {
                 if (settings[g].times[k] == 0) continue;
                 if ((status = critical_row(w, t, &settings[g], k, rule_names[r], &out)) <= 0) return status;
                 if (r > 0) continue;
                 critical_point(&setting[*count], sizes[k], out.spread.median);
+                if (settings[g].pair == OWN_PAIR) {
+                    critical_point(&plane, sizes[k], out.each[0]);
+                    snprintf(plane.name, sizeof plane.name, "%.40s, on a grid plane", settings[g].name);
+                }
                 if (*count > 0) continue;
                 size[k].count = 0;
                 snprintf(size[k].name, sizeof size[k].name, "%g um", sizes[k]);
@@ -271,13 +279,14 @@ static inline int critical_rows(work *w, mpm_io_csv *t, critical_line *setting, 
             }
         ++*count;
     }
+    if (plane.count > 0) setting[(*count)++] = plane;
     return 1;
 }
 
 static inline int critical(work *w)
 {
     const critical_range range = critical_budget(w);
-    static critical_line setting[SETTINGS], size[SIZES];
+    static critical_line setting[SETTINGS + 1], size[SIZES];
     char path[MPM_IO_PATH];
     mpm_io_csv t;
     int count, k, status;

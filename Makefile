@@ -5,7 +5,7 @@
 #   make bench      speed, as ratios measured in one run
 #   make impacts    the impacts of docs/reproduction.md: bonded, unbonded, whole model, rim jet (6 minutes)
 #   make spray-study source B's results again: a quarter of an hour, resumable; BUDGET=quick: less
-#   make reproduction source A's results again: half an hour; BUDGET=desk: six hours; full: days; resumable
+#   make reproduction source A's results again: an hour; BUDGET=desk: nine hours; full: days; resumable
 #   make verify     the verification ladder again: writes docs/verification.md; resumable, `make -j2 verify`
 #   make clean
 

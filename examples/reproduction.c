@@ -1,8 +1,8 @@
 /* reproduction - the results of source A's chapters 4 and 5 again, beside its numbers.
 
    Runs the cases A-conv, A-dt, A-jet, A-crit, A-cal, A-site, A-two and A-ten, and what explains them, at a stated
-   budget: "quick" on the coarsest grid (half an hour of one core), "desk" at 1.0/0.25 um in axisymmetry with
-   checks at 0.7/0.175 um in 3D (some six hours), "full" with every row of the tables (days). Writes tables and
+   budget: "quick" on the coarsest grid (an hour of one core), "desk" at 1.0/0.25 um in axisymmetry with
+   checks at 0.7/0.175 um and in 3D (some nine hours), "full" with every row of the tables (days). Writes tables and
    plots into --data and replaces its part of --page.
    Every finished run is kept in --out and never repeated (but for the first nanoseconds of sixteen impacts, which take
    a second or two); delete the folder after changing the headers.

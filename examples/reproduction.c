@@ -452,7 +452,7 @@ static const double two_offset[OFFSETS] = {0, 2.5, 5, 7.5};
 enum { BY_TOP, BY_BOTTOM, BY_BOTH };
 static const char *const normal_of[3] = {"top", "bottom", "both"};
 
-#define TWO_SETS 10
+#define TWO_SETS 13
 static const two_runs two_sets[TWO_SETS] = {
     {{1.5, 0.5}, "3d", "half", BY_TOP, SOURCE_PAIR, 15, 1 << QUICK},
     {{1.0, 0.35}, "3d", "half", BY_TOP, SOURCE_PAIR, 15, 1 << DESK},
@@ -461,6 +461,9 @@ static const two_runs two_sets[TWO_SETS] = {
     {{0.7, 0.175}, "3d", "quarter", BY_TOP, SOURCE_PAIR, 1, 1 << DESK | 1 << FULL},
     {{0.7, 0.175}, "3d", "half", BY_TOP, SOURCE_PAIR, 8, 1 << DESK},
     {{0.7, 0.175}, "3d", "half", BY_TOP, SOURCE_PAIR, 14, 1 << FULL},
+    {{0.7, 0.175}, "3d", "quarter", BY_BOTH, SOURCE_PAIR, 1, 1 << DESK | 1 << FULL},
+    {{0.7, 0.175}, "3d", "half", BY_BOTH, SOURCE_PAIR, 8, 1 << DESK},
+    {{0.7, 0.175}, "3d", "half", BY_BOTH, SOURCE_PAIR, 14, 1 << FULL},
     {{0.7, 0.175}, "3d", "quarter", BY_TOP, OWN_PAIR, 1, 1 << DESK | 1 << FULL},
     {{0.7, 0.175}, "3d", "half", BY_TOP, OWN_PAIR, 8, 1 << DESK | 1 << FULL},
     {{0.7, 0.175}, "axisymmetric", "quarter", BY_TOP, SOURCE_PAIR, 1, 1 << QUICK | 1 << DESK | 1 << FULL}};

@@ -171,7 +171,7 @@ typedef struct calibration_side {
     calibration_map map;
     mpm_logistic fit;
     mpm_status status;  /* of the fit */
-    char why[120];      /* its status in words */
+    const char *why;    /* its status in words */
     long tests, bonded;
 } calibration_side;
 
@@ -203,10 +203,9 @@ static inline void calibration_collect(const calibration *q, const study *s, cal
             side->bonded += side->map.bonds[k];
         }
         side->status = mpm_bond_logistic_fit(&side->fit, x1, x2, outcome, side->tests, q->ridge, 200, NULL);
-        snprintf(side->why, sizeof side->why, "%s",
-                 side->tests < 6                                             ? "fewer than six runs"
-                 : side->bonded == 0 || side->bonded == side->tests          ? "one class only"
-                                                                             : mpm_io_status_text(side->status));
+        side->why = mpm_io_status_text(side->status);
+        if (side->bonded == 0 || side->bonded == side->tests) side->why = "one class only";
+        if (side->tests < 6) side->why = "fewer than six runs";
     }
     low[0] = calibration_x(q, q->gc[0]);
     low[1] = calibration_x(q, q->gdot[0]);

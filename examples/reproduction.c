@@ -289,12 +289,12 @@ static int calibrations(work *w)
     say(w, "### A-cal: calibration\n\n14 um at 810 m/s and 30 um at 770 m/s, axisymmetric, the interface on a grid "
            "plane, time step factor 0.2, runs where the class changes; Gdot_c in steps of %.0f %%. Source A: G_c "
            "1503.74 J/m2 and 2.271 (read as e5 J/(m2 us)) at 0.7/0.175, nearly the same on all grids. Rule \"thesis\": "
-           "PBCP and restitution tolerances of its Table 5.2 for the grid. The fits have a ridge of 1e-4: separable "
+           "PBCP and restitution tolerances of its Table 5.2 for the grid. The fits have a ridge of %g: separable "
            "classes leave the boundary open without one.\n\n"
            "| cell/spacing, um | rule | runs | on the wrong side, 14, 30 um | highest Gdot_c that bonds 14, 30 um at "
            "G_c 1057 | 2236 | 4729 | crossings: G_c, Gdot_c | G_c with ridge 1e-3; 1e-5; 1e-6 | pairs run at both: "
            "only 14 um bonds, only 30 um |\n|---|---|---|---|---|---|---|---|---|---|\n",
-        100 * (pow(20, 1.0 / 16) - 1));
+        100 * (pow(20, 1.0 / 16) - 1), calibration_default().ridge);
     if ((status = calibration_rows(w, &t, count, range, crossed)) <= 0) {
         mpm_io_csv_drop(&t);
         return status;

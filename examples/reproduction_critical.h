@@ -178,11 +178,28 @@ static inline void critical_point(critical_line *l, double x, double v)
     l->y[l->count++] = (mpm_real)v;
 }
 
-/* Critical velocity over the position of the grid, a curve per size: file and picture. */
-static inline int position_plot(work *w, const critical_line *size)
+/* Critical velocity over the position of the grid, by size, as a file. */
+static inline int position_table(work *w, const critical_line *size)
 {
+    char path[MPM_IO_PATH];
     mpm_io_csv t;
     size_t i;
+    int k;
+    mpm_io_csv_begin(&t, data_file(w, "position.csv", path, sizeof path),
+                     "diameter_um,grid_plane_over_interface_cells,critical_velocity_m_s",
+                     "A-crit; positions at which nothing bonded are left out", &w->fault);
+    for (k = 0; k < SIZES; k++)
+        for (i = 0; i < size[k].count; i++) {
+            mpm_io_csv_real(&t, (mpm_real)sizes[k]);
+            mpm_io_csv_real(&t, size[k].x[i]);
+            mpm_io_csv_real(&t, size[k].y[i]);
+        }
+    return mpm_io_csv_end(&t, &w->fault) >= 0 || failed(w);
+}
+
+/* The same as a picture, a curve per size. */
+static inline int position_plot(work *w, const critical_line *size)
+{
     mpm_io_curve line[SIZES];
     mpm_io_plot_desc d = mpm_io_plot_desc_default();
     char path[MPM_IO_PATH];
@@ -196,16 +213,6 @@ static inline int position_plot(work *w, const critical_line *size)
         line[k].color = k;
         line[k].name = size[k].name;
     }
-    mpm_io_csv_begin(&t, data_file(w, "position.csv", path, sizeof path),
-                     "diameter_um,grid_plane_over_interface_cells,critical_velocity_m_s",
-                     "A-crit; positions at which nothing bonded are left out", &w->fault);
-    for (k = 0; k < SIZES; k++)
-        for (i = 0; i < size[k].count; i++) {
-            mpm_io_csv_real(&t, (mpm_real)sizes[k]);
-            mpm_io_csv_real(&t, size[k].x[i]);
-            mpm_io_csv_real(&t, size[k].y[i]);
-        }
-    if (mpm_io_csv_end(&t, &w->fault) < 0) return failed(w);
     d.curves = line;
     d.curve_count = SIZES;
     d.title = "critical velocity over the position of the grid";
@@ -322,7 +329,7 @@ static inline int critical(work *w)
     say(w, " m/s (tensile strength 110 MPa, 20 C).\n\n");
     if (mpm_io_csv_end(&t, &w->fault) < 0) return failed(w);
     status = critical_plot(w, setting, count);
-    return status > 0 ? position_plot(w, size) : status;
+    return status > 0 && position_table(w, size) && position_plot(w, size);
 }
 
 /* ---- what the rule's constants mean ---------------------------------------------------------- */

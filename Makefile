@@ -15,10 +15,10 @@ CFLAGS ?= -O3 $(NATIVE) -ffp-contract=off -fno-math-errno -fno-trapping-math
 # Tests are compiled quickly; they hold at any level.
 TESTFLAGS ?= -O2 -ffp-contract=off
 STRICT  = -std=c99 -pedantic -Wall -Wextra -Wconversion -Wshadow
-INCLUDE = -I. -Iexamples -Itests
-HEADERS = $(wildcard mpm*.h examples/*.h tests/*.h tests/verify/*.h bench/*.h)
+INCLUDE = -I. -Iexamples -Iexamples/studies -Itests
+HEADERS = $(wildcard mpm*.h examples/*.h examples/studies/*.h tests/*.h tests/verify/*.h bench/*.h)
 
-EXAMPLES = $(patsubst examples/%.c,build/%,$(wildcard examples/*.c))
+EXAMPLES = $(patsubst examples/%.c,build/%,$(wildcard examples/*.c)) $(patsubst examples/studies/%.c,build/%,$(wildcard examples/studies/*.c))
 TESTS    = $(patsubst tests/%.c,build/tests/%,$(wildcard tests/[0-9]*.c))
 FLOATS   = $(patsubst tests/%.c,build/tests/%_f32,$(wildcard tests/[0-9]*.c))
 VERIFY   = $(patsubst tests/verify/%.c,build/verify/%.md,$(sort $(wildcard tests/verify/*.c)))
@@ -36,6 +36,10 @@ bench: $(BENCH)
 	@for b in $(BENCH); do $$b || exit 1; done
 
 build/%: examples/%.c $(HEADERS)
+	@mkdir -p build
+	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $< -o $@ $(LDFLAGS) -lm
+
+build/%: examples/studies/%.c $(HEADERS)
 	@mkdir -p build
 	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $< -o $@ $(LDFLAGS) -lm
 

@@ -1,4 +1,4 @@
-/* reproduction.h - what the parts of examples/reproduction.c share: the budget, the runs, and the page under
+/* reproduction.h - what the parts of examples/studies/reproduction.c share: the budget, the runs, and the page under
    way. SPDX-License-Identifier: MIT */
 #ifndef REPRODUCTION_H
 #define REPRODUCTION_H

@@ -39,7 +39,7 @@ static int write_tasks(const calibration *q, const study *s, mpm_fault *fault)
     long k;
     snprintf(path, sizeof path, "%s/tasks.csv", s->folder);
     mpm_io_csv_begin(&t, path, "task,diameter_um,velocity_m_s,gc_J_m2,gdot_J_m2_us,pbcp_percent,restitution_ratio,"
-                               "v_late_m_s,bonds", "examples/calibrate.c", fault);
+                               "v_late_m_s,bonds", "examples/studies/calibrate.c", fault);
     for (size = 0; size < 2; size++)
         for (k = 0; k < calibration_nodes(q); k++) {
             const impact_case c = calibration_case(q, size, k);
@@ -129,7 +129,7 @@ static int collect(const calibration *q, const study *s, const option *o, int n,
         return 0;
     }
     snprintf(path, sizeof path, "%s/classes.png", s->folder);
-    if (!write_tasks(q, s, &fault) || !calibration_draw(q, &r, path, "examples/calibrate.c", &fault) ||
+    if (!write_tasks(q, s, &fault) || !calibration_draw(q, &r, path, "examples/studies/calibrate.c", &fault) ||
         !write_summary(q, &r, s, o, n, &fault)) {
         mpm_io_fault_text(message, room, &fault);
         return 0;

@@ -35,7 +35,7 @@ static int write_curve(const request *q, const critical_curve *curve, mpm_fault 
         strcat(columns, study_name[v]);
     }
     snprintf(path, sizeof path, "%s/curve.csv", q->folder);
-    mpm_io_csv_begin(&t, path, columns, "examples/critical_velocity.c", fault);
+    mpm_io_csv_begin(&t, path, columns, "examples/studies/critical_velocity.c", fault);
     for (k = 0; k < curve->runs; k++) {
         mpm_io_csv_real(&t, (mpm_real)curve->run[k].offset);
         mpm_io_csv_real(&t, (mpm_real)curve->run[k].velocity);
@@ -81,7 +81,7 @@ static int draw_curve(const request *q, const critical_curve *curve, mpm_fault *
         d[p].title = p ? "rebound velocity" : "PBCP";
     }
     snprintf(path, sizeof path, "%s/curve.png", q->folder);
-    return study_plots(path, d, 2, 2, "examples/critical_velocity.c", fault);
+    return study_plots(path, d, 2, 2, "examples/studies/critical_velocity.c", fault);
 }
 
 static int write_summary(const request *q, const critical_answer *a, const critical_spread *s, const study *st,

@@ -310,7 +310,7 @@ static mpm_status write_table(const study *st, mpm_fault *fault)
         strcat(columns, value_name[k]);
     }
     snprintf(path, sizeof path, "%s/spray_runs.csv", st->data);
-    if ((status = mpm_io_csv_begin(&csv, path, columns, "examples/spray_study.c", fault)) < 0) return status;
+    if ((status = mpm_io_csv_begin(&csv, path, columns, "examples/studies/spray_study.c", fault)) < 0) return status;
     for (n = 0; n < st->count; n++) {
         const run_case *c = &st->records[n].c;
         if (c->time != st->time) continue;
@@ -381,7 +381,7 @@ static mpm_status draw_panels(const char *path, panel *p, int count, int columns
     mpm_status status = mpm_io_canvas_init(&canvas, 620 * columns, 420 * rows, NULL, 0);
     for (k = 0; k < count && status >= 0; k++)
         status = mpm_io_plot(&canvas, mpm_io_tile(&canvas, columns, rows, k), &p[k].d, fault);
-    if (status >= 0) status = mpm_io_png(path, &canvas, "examples/spray_study.c", fault);
+    if (status >= 0) status = mpm_io_png(path, &canvas, "examples/studies/spray_study.c", fault);
     mpm_io_canvas_free(&canvas);
     return status;
 }
@@ -464,9 +464,9 @@ static int pictures(const study *st, mpm_fault *fault)
             mpm_spray_free(&s);
         }
     snprintf(path, sizeof path, "%s/spray_b8.png", st->data);
-    bad = bad || mpm_io_png(path, &plume, "examples/spray_study.c", fault) < 0;
+    bad = bad || mpm_io_png(path, &plume, "examples/studies/spray_study.c", fault) < 0;
     snprintf(path, sizeof path, "%s/spray_b10.png", st->data);
-    bad = bad || mpm_io_png(path, &top, "examples/spray_study.c", fault) < 0;
+    bad = bad || mpm_io_png(path, &top, "examples/studies/spray_study.c", fault) < 0;
     mpm_io_canvas_free(&plume);
     mpm_io_canvas_free(&top);
     spray_columns_free(&columns);

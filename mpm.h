@@ -1,5 +1,5 @@
 /* mpm.h - the material point method in one header: 3D explicit MUSL with contact.
-   Version 0.1.0. SPDX-License-Identifier: MIT
+   Version 0.2.0. SPDX-License-Identifier: MIT
 
    DO THIS
      In ONE source file:                          everywhere else:
@@ -56,10 +56,16 @@
 #ifndef MPM_H
 #define MPM_H
 
+#include <float.h>
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#define MPM_VERSION "0.1.0"
+#define MPM_VERSION_MAJOR 0
+#define MPM_VERSION_MINOR 2
+#define MPM_VERSION_PATCH 0
+#define MPM_VERSION_NUMBER 200 /* 10000 major + 100 minor + patch: what the other headers compare */
+#define MPM_VERSION "0.2.0"
 
 #ifdef MPM_FLOAT
 typedef float mpm_real;
@@ -155,6 +161,66 @@ typedef struct mpm_fault {
     long index;         /* point, body or axis it belongs to; -1 for none */
 } mpm_fault;
 
+/* ---- tools --------------------------------------------------------------------------------- */
+
+/* What the headers share, for your own laws too: static inline, free to use. */
+
+#define MPM_PI MPM_R(3.14159265358979323846)
+#define MPM_ALIGN 64 /* bytes: of what mpm_carve hands out */
+
+/* mpm_sqrt(x), mpm_exp(x), ...: libm in mpm_real. */
+#define MPM_MATH_LIST(X) X(sqrt) X(cbrt) X(exp) X(expm1) X(log) X(erf) X(tanh) X(fabs)
+#ifdef MPM_FLOAT
+#define MPM__MATH(name) static inline mpm_real mpm_##name(mpm_real x) { return name##f(x); }
+static inline mpm_real mpm_pow(mpm_real x, mpm_real y) { return powf(x, y); }
+#else
+#define MPM__MATH(name) static inline mpm_real mpm_##name(mpm_real x) { return name(x); }
+static inline mpm_real mpm_pow(mpm_real x, mpm_real y) { return pow(x, y); }
+#endif
+MPM_MATH_LIST(MPM__MATH)
+#undef MPM__MATH
+
+/* Finite, told without C99 macros that C++ hides: both comparisons fail for NaN. */
+static inline int mpm_finite(mpm_real x)
+{
+#ifdef MPM_FLOAT
+    return x >= -FLT_MAX && x <= FLT_MAX;
+#else
+    return x >= -DBL_MAX && x <= DBL_MAX;
+#endif
+}
+
+/* Notes a fault, if the caller wants one, and hands its status on. */
+static inline mpm_status mpm_fail(mpm_fault *f, mpm_status s, const char *field, mpm_real value, long index)
+{
+    if (f) {
+        f->status = s;
+        f->field = field;
+        f->value = value;
+        f->index = index;
+    }
+    return s;
+}
+
+/* MPM_OK if `ok` and the value is finite; else a fault that names the field: MPM_ERR_ARGUMENT or MPM_ERR_NAN. */
+static inline mpm_status mpm_want(int ok, mpm_fault *f, const char *field, mpm_real value, long index)
+{
+    if (!mpm_finite(value)) return mpm_fail(f, MPM_ERR_NAN, field, value, index);
+    return ok ? MPM_OK : mpm_fail(f, MPM_ERR_ARGUMENT, field, value, index);
+}
+
+/* Sizes that stick at the top instead of wrapping around. */
+static inline size_t mpm_size_add(size_t a, size_t b) { return a > (size_t)-1 - b ? (size_t)-1 : a + b; }
+static inline size_t mpm_size_mul(size_t a, size_t b) { return b && a > (size_t)-1 / b ? (size_t)-1 : a * b; }
+
+/* Takes n items of `size` bytes from a block, aligned; with base == NULL it only counts them into `used`. */
+static inline void *mpm_carve(char *base, size_t *used, size_t n, size_t size)
+{
+    size_t at = mpm_size_add(*used, MPM_ALIGN - 1) / MPM_ALIGN * MPM_ALIGN;
+    *used = mpm_size_add(at, mpm_size_mul(n, size));
+    return base ? base + at : NULL;
+}
+
 /* ---- units --------------------------------------------------------------------------------- */
 
 /* A consistent unit system: the SI value of one unit of each base quantity. Temperature is K. */
@@ -198,12 +264,17 @@ typedef struct mpm_block {
     mpm_real *plastic_work;       /* integral of flow stress d(plastic strain) [stress] (A 4.15) */
     mpm_real *user[MPM_USER_FIELDS]; /* the points' user fields, for a law's own history; NULL beyond
                                      user_fields of the description. Test: 24_manufactured */
+    int64_t *tally;               /* counters of the world, for what a law wants counted: see MPM_TALLIES */
     mpm_fault *fault;             /* filled by the material when it fails; index within the block */
 } mpm_block;
 
+/* Counters in the world that laws may use, so that materials and bonds stay const in a step: 0 .. 3 belong to
+   mpm_ptw.h, 4 .. 7 to mpm_bond.h, the others to your own. */
+#define MPM_TALLIES 16
+
 /* A constitutive update: material points to the caller's parameters. Returns a status; a negative
    one stops the step, a positive one is counted and passed on. */
-typedef mpm_status (*mpm_stress_fn)(void *material, const mpm_block *block);
+typedef mpm_status (*mpm_stress_fn)(const void *material, const mpm_block *block);
 
 /* ---- shapes -------------------------------------------------------------------------------- */
 
@@ -338,7 +409,7 @@ typedef struct mpm_body_desc {
     mpm_real velocity[3];
     mpm_real temperature;    /* [K] */
     mpm_stress_fn stress;    /* constitutive update, or NULL for a body without stress */
-    void *material;          /* passed to it */
+    const void *material;    /* passed to it */
     mpm_real wave_p, wave_s; /* longitudinal and shear wave speeds: time step and dampers */
     int absorb;              /* faces with a viscous damper: MPM_BOTTOM | MPM_SIDES (A 3.45) */
     mpm_real absorb_a, absorb_b; /* damper factors, normal and tangential (thesis: 1) */
@@ -429,6 +500,7 @@ typedef struct mpm_world {
     long retired;            /* points that left the grid */
     long sorts;              /* times the points were put back in cell order */
     long notices;            /* positive statuses returned by materials */
+    int64_t tally[MPM_TALLIES]; /* counters of laws */
     long held;               /* pairs that the bond held in the last step */
 
     int32_t nodes_per_axis[3], ghost; /* grid nodes, ghost layers included */
@@ -558,8 +630,6 @@ MPM_API const char *mpm_version(void);
 #if defined(MPM_IMPLEMENTATION) && !defined(MPM__IMPLEMENTED)
 #define MPM__IMPLEMENTED
 
-#include <float.h>
-#include <math.h>
 #include <string.h>
 
 #ifndef MPM_MALLOC
@@ -587,7 +657,6 @@ MPM_API const char *mpm_version(void);
 #else
 #define MPM__HAIR 1e-9
 #endif
-#define MPM__PI MPM_R(3.14159265358979323846)
 
 #ifdef __cplusplus
 extern "C" {
@@ -606,60 +675,6 @@ MPM_API const char *mpm_status_text(mpm_status s)
 #undef MPM__STATUS_TEXT
     default: return "unknown status";
     }
-}
-
-static inline mpm_real mpm__cbrt(mpm_real a)
-{
-#ifdef MPM_FLOAT
-    return cbrtf(a);
-#else
-    return cbrt(a);
-#endif
-}
-
-static inline mpm_real mpm__tanh(mpm_real a)
-{
-#ifdef MPM_FLOAT
-    return tanhf(a);
-#else
-    return tanh(a);
-#endif
-}
-
-static inline mpm_real mpm__sqrt(mpm_real a)
-{
-#ifdef MPM_FLOAT
-    return sqrtf(a);
-#else
-    return sqrt(a);
-#endif
-}
-
-/* Finite, told without C99 macros that C++ hides: both comparisons fail for NaN. */
-static inline int mpm__finite(mpm_real a)
-{
-#ifdef MPM_FLOAT
-    return a >= -FLT_MAX && a <= FLT_MAX;
-#else
-    return a >= -DBL_MAX && a <= DBL_MAX;
-#endif
-}
-
-static inline mpm_status mpm__fail(mpm_fault *f, mpm_status s, const char *field, mpm_real value, long index)
-{
-    if (f) {
-        f->status = s;
-        f->field = field;
-        f->value = value;
-        f->index = index;
-    }
-    return s;
-}
-
-static inline mpm_status mpm__want(int ok, mpm_fault *f, const char *field, mpm_real value, long index)
-{
-    if (!mpm__finite(value)) return mpm__fail(f, MPM_ERR_NAN, field, value, index);
-    return ok ? MPM_OK : mpm__fail(f, MPM_ERR_ARGUMENT, field, value, index);
 }
 
 static inline mpm_units mpm__units(double length, double mass, double time)
@@ -690,12 +705,12 @@ MPM_API double mpm_units_area_energy(const mpm_units *u) { return u->mass / (u->
 
 MPM_API mpm_real mpm_wave_speed_p(mpm_real young, mpm_real poisson, mpm_real density)
 {
-    return mpm__sqrt(young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson) * density));
+    return mpm_sqrt(young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson) * density));
 }
 
 MPM_API mpm_real mpm_wave_speed_s(mpm_real young, mpm_real poisson, mpm_real density)
 {
-    return mpm__sqrt(young / (2 * (1 + poisson) * density));
+    return mpm_sqrt(young / (2 * (1 + poisson) * density));
 }
 
 /* ---- shapes -------------------------------------------------------------------------------- */
@@ -896,9 +911,9 @@ static inline mpm_status mpm__desc_choices(const mpm_desc *d, mpm_fault *f)
     mpm_status s = MPM_OK;
     int i;
     for (i = 0; i < 5 && s == MPM_OK; i++)
-        s = mpm__want(value[i] >= 0 && value[i] <= last[i], f, name[i], (mpm_real)value[i], -1);
+        s = mpm_want(value[i] >= 0 && value[i] <= last[i], f, name[i], (mpm_real)value[i], -1);
     for (i = 0; i < 6 && s == MPM_OK; i++)
-        s = mpm__want((int)d->side[i] >= 0 && (int)d->side[i] <= MPM_SIDE_WALL, f, "side", (mpm_real)d->side[i], i);
+        s = mpm_want((int)d->side[i] >= 0 && (int)d->side[i] <= MPM_SIDE_WALL, f, "side", (mpm_real)d->side[i], i);
     return s;
 }
 
@@ -908,48 +923,35 @@ MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *f)
     double nodes = 1;
     int a;
     if (s != MPM_OK) return s;
-    if ((s = mpm__want(d->cell > 0, f, "cell", d->cell, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->cell > 0, f, "cell", d->cell, -1)) != MPM_OK) return s;
     for (a = 0; a < 3; a++) {
-        if ((s = mpm__want(1, f, "origin", d->origin[a], a)) != MPM_OK) return s;
-        if ((s = mpm__want(1, f, "gravity", d->gravity[a], a)) != MPM_OK) return s;
+        if ((s = mpm_want(1, f, "origin", d->origin[a], a)) != MPM_OK) return s;
+        if ((s = mpm_want(1, f, "gravity", d->gravity[a], a)) != MPM_OK) return s;
         if (a == 1 && d->geometry != MPM_3D) continue;
-        if ((s = mpm__want(d->cells[a] >= 1, f, "cells", (mpm_real)d->cells[a], a)) != MPM_OK) return s;
+        if ((s = mpm_want(d->cells[a] >= 1, f, "cells", (mpm_real)d->cells[a], a)) != MPM_OK) return s;
         nodes *= d->cells[a] + 3.0;
     }
-    if ((s = mpm__want(nodes < 2147483647.0, f, "cells in all", (mpm_real)nodes, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(d->points >= 1, f, "points", (mpm_real)d->points, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(d->bodies >= 1, f, "bodies", (mpm_real)d->bodies, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(d->nodes >= 0, f, "nodes", (mpm_real)d->nodes, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(d->friction >= 0, f, "friction", d->friction, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(d->wall_friction >= 0, f, "wall_friction", d->wall_friction, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(d->mass_cutoff >= 0, f, "mass_cutoff", d->mass_cutoff, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(d->contact_cutoff >= 0, f, "contact_cutoff", d->contact_cutoff, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(d->bond_width >= 0 && d->bond_width <= 2, f, "bond_width", d->bond_width, -1)) != MPM_OK)
+    if ((s = mpm_want(nodes < 2147483647.0, f, "cells in all", (mpm_real)nodes, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->points >= 1, f, "points", (mpm_real)d->points, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->bodies >= 1, f, "bodies", (mpm_real)d->bodies, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->nodes >= 0, f, "nodes", (mpm_real)d->nodes, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->friction >= 0, f, "friction", d->friction, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->wall_friction >= 0, f, "wall_friction", d->wall_friction, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->mass_cutoff >= 0, f, "mass_cutoff", d->mass_cutoff, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->contact_cutoff >= 0, f, "contact_cutoff", d->contact_cutoff, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->bond_width >= 0 && d->bond_width <= 2, f, "bond_width", d->bond_width, -1)) != MPM_OK)
         return s;
-    if ((s = mpm__want(d->user_fields >= 0 && d->user_fields <= MPM_USER_FIELDS, f, "user_fields",
+    if ((s = mpm_want(d->user_fields >= 0 && d->user_fields <= MPM_USER_FIELDS, f, "user_fields",
                        (mpm_real)d->user_fields, -1)) != MPM_OK)
         return s;
     if (d->geometry == MPM_AXISYMMETRIC && !(d->origin[0] >= 0))
-        return mpm__fail(f, MPM_ERR_ARGUMENT, "origin of r", d->origin[0], 0);
+        return mpm_fail(f, MPM_ERR_ARGUMENT, "origin of r", d->origin[0], 0);
     return MPM_OK;
 }
 
 /* ---- memory -------------------------------------------------------------------------------- */
 
-#define MPM__ALIGN 64
 #define MPM__NAMED_FIELDS 20 /* x v mass density stress energy temperature plastic_* bond */
-
-/* Size arithmetic that sticks at the top instead of wrapping around. */
-static inline size_t mpm__add(size_t a, size_t b) { return a > (size_t)-1 - b ? (size_t)-1 : a + b; }
-static inline size_t mpm__mul(size_t a, size_t b) { return b && a > (size_t)-1 / b ? (size_t)-1 : a * b; }
-
-/* Takes n items of `size` bytes from a block, aligned; with base == NULL it only counts. */
-static inline void *mpm__carve(char *base, size_t *used, size_t n, size_t size)
-{
-    size_t at = mpm__add(*used, MPM__ALIGN - 1) / MPM__ALIGN * MPM__ALIGN;
-    *used = mpm__add(at, mpm__mul(n, size));
-    return base ? base + at : NULL;
-}
 
 static inline void mpm__grid_sizes(mpm_world *w)
 {
@@ -975,19 +977,19 @@ static inline size_t mpm__grid_nodes(const mpm_world *w)
 static inline size_t mpm__layout_points(mpm_world *w, char *base)
 {
     mpm_points *p = &w->points;
-    size_t used = 0, n = (size_t)w->desc.points, lines = (n * sizeof(mpm_real) + MPM__ALIGN - 1) / MPM__ALIGN;
+    size_t used = 0, n = (size_t)w->desc.points, lines = (n * sizeof(mpm_real) + MPM_ALIGN - 1) / MPM_ALIGN;
     mpm_real *f;
     int i;
     w->fields = MPM__NAMED_FIELDS + w->desc.user_fields;
-    w->stride = (lines | 1) * (MPM__ALIGN / sizeof(mpm_real));
-    w->body = (mpm_body *)mpm__carve(base, &used, (size_t)w->desc.bodies, sizeof(mpm_body));
-    w->field = (mpm_real *)mpm__carve(base, &used, mpm__mul(w->stride, (size_t)w->fields), sizeof(mpm_real));
-    w->scratch = (mpm_real *)mpm__carve(base, &used, w->stride, sizeof(mpm_real));
-    p->id = (int32_t *)mpm__carve(base, &used, n, sizeof(int32_t));
-    p->flags = (uint8_t *)mpm__carve(base, &used, n, 1);
-    w->key = (int32_t *)mpm__carve(base, &used, n, sizeof(int32_t));
-    w->order = (int32_t *)mpm__carve(base, &used, n, sizeof(int32_t));
-    w->head = (int32_t *)mpm__carve(base, &used, mpm__grid_nodes(w), sizeof(int32_t));
+    w->stride = (lines | 1) * (MPM_ALIGN / sizeof(mpm_real));
+    w->body = (mpm_body *)mpm_carve(base, &used, (size_t)w->desc.bodies, sizeof(mpm_body));
+    w->field = (mpm_real *)mpm_carve(base, &used, mpm_size_mul(w->stride, (size_t)w->fields), sizeof(mpm_real));
+    w->scratch = (mpm_real *)mpm_carve(base, &used, w->stride, sizeof(mpm_real));
+    p->id = (int32_t *)mpm_carve(base, &used, n, sizeof(int32_t));
+    p->flags = (uint8_t *)mpm_carve(base, &used, n, 1);
+    w->key = (int32_t *)mpm_carve(base, &used, n, sizeof(int32_t));
+    w->order = (int32_t *)mpm_carve(base, &used, n, sizeof(int32_t));
+    w->head = (int32_t *)mpm_carve(base, &used, mpm__grid_nodes(w), sizeof(int32_t));
     if (!base) return used;
     f = w->field;
     for (i = 0; i < 3; i++) p->x[i] = f + (size_t)i * w->stride;
@@ -1011,12 +1013,12 @@ static inline size_t mpm__layout_work(mpm_world *w, char *base, int32_t nodes)
     size_t used = 0, n = (size_t)nodes;
     size_t reach = (size_t)w->support[0] * (size_t)w->support[1] * (size_t)w->support[2];
     w->node_capacity = w->run_capacity = w->pair_capacity = nodes;
-    w->node = (mpm_node *)mpm__carve(base, &used, n, sizeof(mpm_node));
-    w->run = (mpm_run *)mpm__carve(base, &used, n, sizeof(mpm_run));
-    w->slot = (int32_t *)mpm__carve(base, &used, mpm__mul(n, reach), sizeof(int32_t));
-    w->pair = (mpm_pair *)mpm__carve(base, &used, n, sizeof(mpm_pair));
+    w->node = (mpm_node *)mpm_carve(base, &used, n, sizeof(mpm_node));
+    w->run = (mpm_run *)mpm_carve(base, &used, n, sizeof(mpm_run));
+    w->slot = (int32_t *)mpm_carve(base, &used, mpm_size_mul(n, reach), sizeof(int32_t));
+    w->pair = (mpm_pair *)mpm_carve(base, &used, n, sizeof(mpm_pair));
     if (w->desc.normal == MPM_NORMAL_LOGISTIC)
-        w->plane = (mpm_plane *)mpm__carve(base, &used, n, sizeof(mpm_plane));
+        w->plane = (mpm_plane *)mpm_carve(base, &used, n, sizeof(mpm_plane));
     return used;
 }
 
@@ -1035,8 +1037,8 @@ MPM_API size_t mpm_bytes(const mpm_desc *d)
     w.desc = *d;
     mpm__grid_sizes(&w);
     n = mpm__layout_points(&w, NULL);
-    if (n > (size_t)-1 - MPM__ALIGN) return 0;
-    n = mpm__add((n + MPM__ALIGN) / MPM__ALIGN * MPM__ALIGN, mpm__layout_work(&w, NULL, mpm__guess_nodes(d)));
+    if (n > (size_t)-1 - MPM_ALIGN) return 0;
+    n = mpm_size_add((n + MPM_ALIGN) / MPM_ALIGN * MPM_ALIGN, mpm__layout_work(&w, NULL, mpm__guess_nodes(d)));
     return n == (size_t)-1 ? 0 : n;
 }
 
@@ -1055,13 +1057,13 @@ MPM_API mpm_status mpm_init(mpm_world *w, const mpm_desc *d, void *memory, size_
         w->desc.side[2] = w->desc.side[3] = MPM_SIDE_OPEN;
     }
     mpm__grid_sizes(w);
-    points = mpm__add(mpm__layout_points(w, NULL), MPM__ALIGN) / MPM__ALIGN * MPM__ALIGN;
+    points = mpm_size_add(mpm__layout_points(w, NULL), MPM_ALIGN) / MPM_ALIGN * MPM_ALIGN;
     work = mpm__layout_work(w, NULL, mpm__guess_nodes(d));
-    if (mpm__add(points, work) == (size_t)-1)
-        return mpm__fail(&w->fault, MPM_ERR_MEMORY, "points", (mpm_real)d->points, -1);
+    if (mpm_size_add(points, work) == (size_t)-1)
+        return mpm_fail(&w->fault, MPM_ERR_MEMORY, "points", (mpm_real)d->points, -1);
     if (memory) {
         if (bytes < points + work)
-            return mpm__fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
+            return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
         w->memory = memory;
         w->work = (char *)memory + points;
     } else {
@@ -1070,7 +1072,7 @@ MPM_API mpm_status mpm_init(mpm_world *w, const mpm_desc *d, void *memory, size_
         w->owns_memory = w->owns_work = 1;
         if (!w->work) {
             mpm_free(w);
-            return mpm__fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)(points + work), -1);
+            return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)(points + work), -1);
         }
     }
     w->memory_bytes = points;
@@ -1119,7 +1121,7 @@ MPM_API mpm_status mpm_grow(mpm_world *w, void *memory, size_t bytes)
     size_t need = mpm_grow_bytes(w);
     void *block = memory ? memory : MPM_MALLOC(need);
     if (!block || (memory && bytes < need))
-        return mpm__fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)need, -1);
+        return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)need, -1);
     mpm__grid_reset(w);
     if (w->owns_work) MPM_FREE(w->work);
     w->work = block;
@@ -1137,24 +1139,24 @@ static inline mpm_status mpm__body_check(const mpm_world *w, const mpm_body_desc
     mpm_status st;
     int a;
     if (w->bodies >= w->desc.bodies)
-        return mpm__fail(f, MPM_ERR_FULL, "bodies", (mpm_real)w->desc.bodies, w->bodies);
-    st = mpm__want(s->kind > MPM_SHAPE_NONE && s->kind <= MPM_SHAPE_BOX, f, "shape", (mpm_real)s->kind, -1);
+        return mpm_fail(f, MPM_ERR_FULL, "bodies", (mpm_real)w->desc.bodies, w->bodies);
+    st = mpm_want(s->kind > MPM_SHAPE_NONE && s->kind <= MPM_SHAPE_BOX, f, "shape", (mpm_real)s->kind, -1);
     if (st != MPM_OK) return st;
     for (a = 0; a < 3; a++) {
-        if ((st = mpm__want(1, f, "shape.center", s->center[a], a)) != MPM_OK) return st;
-        if ((st = mpm__want(s->half[a] > 0, f, "shape.half", s->half[a], a)) != MPM_OK) return st;
-        if ((st = mpm__want(1, f, "velocity", b->velocity[a], a)) != MPM_OK) return st;
+        if ((st = mpm_want(1, f, "shape.center", s->center[a], a)) != MPM_OK) return st;
+        if ((st = mpm_want(s->half[a] > 0, f, "shape.half", s->half[a], a)) != MPM_OK) return st;
+        if ((st = mpm_want(1, f, "velocity", b->velocity[a], a)) != MPM_OK) return st;
     }
-    if ((st = mpm__want(b->spacing > 0, f, "spacing", b->spacing, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->spacing > 0, f, "spacing", b->spacing, -1)) != MPM_OK) return st;
     if (b->spacing > w->desc.cell * (1 + 16 * MPM_EPSILON))
-        return mpm__fail(f, MPM_ERR_ARGUMENT, "spacing (larger than the cell)", b->spacing, -1);
-    if ((st = mpm__want(b->density > 0, f, "density", b->density, -1)) != MPM_OK) return st;
-    if ((st = mpm__want(b->temperature >= 0, f, "temperature", b->temperature, -1)) != MPM_OK) return st;
-    if ((st = mpm__want(b->wave_p >= 0, f, "wave_p", b->wave_p, -1)) != MPM_OK) return st;
-    if ((st = mpm__want(b->wave_s >= 0, f, "wave_s", b->wave_s, -1)) != MPM_OK) return st;
-    if ((st = mpm__want(b->absorb_a >= 0, f, "absorb_a", b->absorb_a, -1)) != MPM_OK) return st;
-    if ((st = mpm__want(b->absorb_b >= 0, f, "absorb_b", b->absorb_b, -1)) != MPM_OK) return st;
-    if ((st = mpm__want(b->shell >= 0, f, "shell", b->shell, -1)) != MPM_OK) return st;
+        return mpm_fail(f, MPM_ERR_ARGUMENT, "spacing (larger than the cell)", b->spacing, -1);
+    if ((st = mpm_want(b->density > 0, f, "density", b->density, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->temperature >= 0, f, "temperature", b->temperature, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->wave_p >= 0, f, "wave_p", b->wave_p, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->wave_s >= 0, f, "wave_s", b->wave_s, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->absorb_a >= 0, f, "absorb_a", b->absorb_a, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->absorb_b >= 0, f, "absorb_b", b->absorb_b, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->shell >= 0, f, "shell", b->shell, -1)) != MPM_OK) return st;
     return MPM_OK;
 }
 
@@ -1183,7 +1185,7 @@ static inline mpm_real mpm__point_mass(const mpm_desc *d, const mpm_body_desc *b
 {
     mpm_real square = b->density * b->spacing * b->spacing;
     if (d->geometry == MPM_3D) return square * b->spacing;
-    return d->geometry == MPM_AXISYMMETRIC ? 2 * MPM__PI * x[0] * square : square;
+    return d->geometry == MPM_AXISYMMETRIC ? 2 * MPM_PI * x[0] * square : square;
 }
 
 /* The share of a shape that the symmetry planes leave in the grid. */
@@ -1209,8 +1211,8 @@ static inline void mpm__areas(const mpm_desc *d, mpm_body *b)
         b->area[1] = 2 * (a + 2 * s->half[1]) * h * kept;
     } else {
         if (d->geometry == MPM_AXISYMMETRIC) kept = 1; /* rings are whole */
-        b->area[0] = MPM__PI * s->half[0] * s->half[0] * kept;
-        b->area[1] = 2 * MPM__PI * s->half[0] * h * kept;
+        b->area[0] = MPM_PI * s->half[0] * s->half[0] * kept;
+        b->area[1] = 2 * MPM_PI * s->half[0] * h * kept;
     }
 }
 
@@ -1247,12 +1249,12 @@ static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
     mpm_real x[3];
     int a, flat = mpm__flat(&w->desc);
     while (mpm__lattice_next(&l, &w->desc, &d->shape, x)) {
-        if (i >= p->capacity) return mpm__fail(f, MPM_ERR_FULL, "points", (mpm_real)p->capacity, -1);
+        if (i >= p->capacity) return mpm_fail(f, MPM_ERR_FULL, "points", (mpm_real)p->capacity, -1);
         if ((a = mpm__axis_outside(&w->desc, x)) >= 0)
-            return mpm__fail(f, MPM_ERR_OUTSIDE, a == 0 ? "x of a point" : a == 1 ? "y of a point" : "z of a point",
+            return mpm_fail(f, MPM_ERR_OUTSIDE, a == 0 ? "x of a point" : a == 1 ? "y of a point" : "z of a point",
                              x[a], w->bodies);
         if ((other = mpm__body_at(w, x)) >= 0)
-            return mpm__fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
+            return mpm_fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
         for (a = 0; a < w->fields; a++) w->field[(size_t)a * w->stride + (size_t)i] = 0;
         for (a = 0; a < 3; a++) {
             p->x[a][i] = x[a];
@@ -1268,7 +1270,7 @@ static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
         mass += (double)p->mass[i];
         i++;
     }
-    if (i == p->count) return mpm__fail(f, MPM_ERR_ARGUMENT, "shape (holds no point at spacing)", d->spacing, -1);
+    if (i == p->count) return mpm_fail(f, MPM_ERR_ARGUMENT, "shape (holds no point at spacing)", d->spacing, -1);
     b->first = p->count;
     b->count = b->active = i - p->count;
     b->point_mass = (mpm_real)(mass / b->count);
@@ -1299,7 +1301,7 @@ MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *desc)
     memset(&b, 0, sizeof b);
     if ((s = mpm__body_check(w, desc, &w->fault)) != MPM_OK) return s;
     if ((other = mpm__point_inside(w, &desc->shape)) >= 0)
-        return mpm__fail(&w->fault, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
+        return mpm_fail(&w->fault, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
     b.desc = *desc;
     mpm__areas(&w->desc, &b);
     if ((s = mpm__fill(w, &b, &w->fault)) != MPM_OK) return s;
@@ -1385,8 +1387,8 @@ static inline mpm_status mpm__retire(mpm_world *w, mpm_body *b)
     int a;
     for (i = b->first; i < b->first + b->active; i++)
         for (a = 0; a < 3 && w->key[i] < 0; a++)
-            if (!mpm__finite(p->x[a][i]))
-                return mpm__fail(&w->fault, MPM_ERR_NAN, "position of point", p->x[a][i], i);
+            if (!mpm_finite(p->x[a][i]))
+                return mpm_fail(&w->fault, MPM_ERR_NAN, "position of point", p->x[a][i], i);
     for (i = b->first; i < b->first + b->active; i++)
         while (w->key[i] < 0 && i < b->first + b->active) {
             mpm__swap_points(w, i, b->first + b->active - 1);
@@ -1543,7 +1545,7 @@ full:
     i = w->pairs_possible;
     mpm__grid_reset(w);
     w->pairs_possible = i;
-    return mpm__fail(&w->fault, MPM_ERR_FULL, "nodes", (mpm_real)w->node_capacity, -1);
+    return mpm_fail(&w->fault, MPM_ERR_FULL, "nodes", (mpm_real)w->node_capacity, -1);
 }
 
 /* ---- shape functions and the sweep over a run ------------------------------------------------ */
@@ -1786,7 +1788,7 @@ static inline void mpm__walls(mpm_world *w, mpm_node *n, mpm_real dt)
         change[axis] = -n->momentum[axis];
         for (d = 0; d < 3; d++)
             if (d != axis) slip += n->momentum[d] * n->momentum[d];
-        slip = mpm__sqrt(slip);
+        slip = mpm_sqrt(slip);
         keep = slip > w->desc.wall_friction * jn ? 1 - w->desc.wall_friction * jn / slip : 0;
         for (d = 0; d < 3; d++) {
             mpm_real before = n->momentum[d];
@@ -1893,7 +1895,7 @@ static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r, mpm_real dt)
                 if (!(q->flags[i] & d->absorb & (face ? MPM_SIDES : MPM_BOTTOM))) continue;
                 if (face) { /* radial, whatever the section */
                     mpm_real x = q->x[0][i] - d->shape.center[0], y = ky > 1 ? q->x[1][i] - d->shape.center[1] : 0;
-                    mpm_real radius = mpm__sqrt(x * x + y * y);
+                    mpm_real radius = mpm_sqrt(x * x + y * y);
                     normal[0] = radius > 0 ? x / radius : 1;
                     normal[1] = radius > 0 ? y / radius : 0;
                     normal[2] = 0;
@@ -2005,7 +2007,7 @@ static inline int mpm__unit(const mpm_real *g, mpm_real scale, mpm_real *n)
         if (size > big) big = size;
     }
     if (!(big > scale)) return 0;
-    length = mpm__sqrt((g[0] / big) * (g[0] / big) + (g[1] / big) * (g[1] / big) + (g[2] / big) * (g[2] / big));
+    length = mpm_sqrt((g[0] / big) * (g[0] / big) + (g[1] / big) * (g[1] / big) + (g[2] / big) * (g[2] / big));
     for (d = 0; d < 3; d++) n[d] = g[d] / big / length;
     return 1;
 }
@@ -2048,7 +2050,7 @@ static inline void mpm__plane_point(mpm_plane *f, int of_b, const mpm_real *x)
     mpm_real z = 0, L, slope, left;
     int i, j, at = 0;
     for (i = 0; i < 4; i++) z += f->phi[i] * X[i];
-    L = mpm__tanh(z / 2);
+    L = mpm_tanh(z / 2);
     slope = (1 - L * L) / 2;
     left = (of_b ? 1 : -1) - L;
     for (i = 0; i < 4; i++) {
@@ -2075,7 +2077,7 @@ static inline void mpm__plane_step(mpm_plane *f)
         for (j = 0; j <= i; j++) {
             const mpm_real *other = A + j * (j + 1) / 2;
             for (k = 0; k < j; k++) row[j] -= row[k] * other[k];
-            row[j] = j < i ? row[j] / other[j] : mpm__sqrt(row[j]);
+            row[j] = j < i ? row[j] / other[j] : mpm_sqrt(row[j]);
         }
         for (k = 0; k < i; k++) b[i] -= row[k] * b[k];
         b[i] /= row[i];
@@ -2094,9 +2096,9 @@ static inline void mpm__plane_step(mpm_plane *f)
 static inline mpm_real mpm__point_radius(const mpm_world *w, int32_t i)
 {
     const mpm_real volume = w->points.mass[i] / w->points.density[i];
-    if (w->desc.geometry == MPM_3D) return mpm__cbrt(volume) / 2;
-    if (w->desc.geometry == MPM_PLANE_STRAIN) return mpm__sqrt(volume) / 2;
-    return mpm__sqrt(volume / (2 * MPM__PI * w->points.x[0][i])) / 2;
+    if (w->desc.geometry == MPM_3D) return mpm_cbrt(volume) / 2;
+    if (w->desc.geometry == MPM_PLANE_STRAIN) return mpm_sqrt(volume) / 2;
+    return mpm_sqrt(volume / (2 * MPM_PI * w->points.x[0][i])) / 2;
 }
 
 /* Shows point i, at x from a contact node [cells], to the pairs of its body there: to their planes if
@@ -2197,7 +2199,7 @@ static inline int mpm__weighs(const mpm_world *w, const mpm_node *n)
     if (rings) {
         mpm_real r = w->desc.origin[0] + (mpm_real)(n->index % w->nodes_per_axis[0] - w->ghost) * w->desc.cell;
         if (r < w->desc.cell / 2) r = w->desc.cell / 2;
-        point = b->desc.density * b->desc.spacing * b->desc.spacing * 2 * MPM__PI * r;
+        point = b->desc.density * b->desc.spacing * b->desc.spacing * 2 * MPM_PI * r;
     }
     for (s = rings ? 2 : 0; s < 6; s++)
         if ((n->sides >> s & 1) && w->desc.side[s] == MPM_SIDE_SYMMETRY) point /= 2;
@@ -2267,7 +2269,7 @@ static inline void mpm__coulomb(const mpm_real *normal, mpm_real mu, mpm_real *j
         t[d] = j[d] - jn * normal[d];
         jt += t[d] * t[d];
     }
-    jt = mpm__sqrt(jt);
+    jt = mpm_sqrt(jt);
     keep = mu * (jn < 0 ? -jn : jn);
     keep = jt > keep ? keep / jt : 1;
     for (d = 0; d < 3; d++) j[d] = jn * normal[d] + (mu > 0 ? keep * t[d] : 0);
@@ -2460,9 +2462,9 @@ static inline mpm_status mpm__constitute(mpm_world *w, const mpm_body *body, int
     if (worst > 0)
         for (p = 0; p < n; p++) {
             const mpm_real volume = 1 + e[0][p] + e[1][p] + e[2][p];
-            if (!mpm__finite(volume)) return mpm__fail(&w->fault, MPM_ERR_NAN, "strain of point", volume, first + p);
+            if (!mpm_finite(volume)) return mpm_fail(&w->fault, MPM_ERR_NAN, "strain of point", volume, first + p);
             if (!(volume > MPM_EPSILON && volume < 1 / MPM_EPSILON))
-                return mpm__fail(&w->fault, MPM_ERR_STATE, "volume ratio of point in one step", volume, first + p);
+                return mpm_fail(&w->fault, MPM_ERR_STATE, "volume ratio of point in one step", volume, first + p);
         }
     if (!body->desc.stress) return MPM_OK;
     b.count = n;
@@ -2478,6 +2480,7 @@ static inline mpm_status mpm__constitute(mpm_world *w, const mpm_body *body, int
     b.plastic_rate = q->plastic_rate + first;
     b.plastic_work = q->plastic_work + first;
     for (i = 0; i < MPM_USER_FIELDS; i++) b.user[i] = i < w->desc.user_fields ? q->user[i] + first : NULL;
+    b.tally = w->tally;
     b.fault = &w->fault;
     s = body->desc.stress(body->desc.material, &b);
     if (s < 0) w->fault.index += first;

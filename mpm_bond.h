@@ -402,15 +402,6 @@ MPM_API int mpm_bond_logistic_cross(const mpm_logistic *a, const mpm_logistic *b
 extern "C" {
 #endif
 
-static inline mpm_real mpm__bond_log(mpm_real a)
-{
-#ifdef MPM_FLOAT
-    return logf(a);
-#else
-    return log(a);
-#endif
-}
-
 MPM_API mpm_bond mpm_bond_default(const mpm_units *u)
 {
     mpm_bond b;
@@ -427,22 +418,22 @@ MPM_API mpm_status mpm_bond_check(const mpm_bond *b, mpm_fault *f)
 {
     const int rule = (int)b->rule, mean = (int)b->average;
     mpm_status s;
-    s = mpm__want(b->partner >= -1 && b->partner < MPM_USER_FIELDS, f, "bond partner", (mpm_real)b->partner, -1);
-    if (s == MPM_OK) s = mpm__want(rule >= 0 && rule <= MPM_BOND_USER, f, "bond rule", (mpm_real)rule, -1);
-    if (s == MPM_OK) s = mpm__want(mean >= 0 && mean <= MPM_BOND_LITERAL, f, "bond average", (mpm_real)mean, -1);
+    s = mpm_want(b->partner >= -1 && b->partner < MPM_USER_FIELDS, f, "bond partner", (mpm_real)b->partner, -1);
+    if (s == MPM_OK) s = mpm_want(rule >= 0 && rule <= MPM_BOND_USER, f, "bond rule", (mpm_real)rule, -1);
+    if (s == MPM_OK) s = mpm_want(mean >= 0 && mean <= MPM_BOND_LITERAL, f, "bond average", (mpm_real)mean, -1);
     if (s != MPM_OK || b->rule == MPM_BOND_NONE) return s;
-    if (b->rule == MPM_BOND_USER) return mpm__want(b->grow != NULL, f, "bond grow", 0, -1);
-    if ((s = mpm__want(b->critical > 0, f, "bond critical", b->critical, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(b->critical_rate > 0, f, "bond critical_rate", b->critical_rate, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(b->floor > 0, f, "bond floor", b->floor, -1)) != MPM_OK) return s;
-    return mpm__want(b->length >= 0, f, "bond length", b->length, -1);
+    if (b->rule == MPM_BOND_USER) return mpm_want(b->grow != NULL, f, "bond grow", 0, -1);
+    if ((s = mpm_want(b->critical > 0, f, "bond critical", b->critical, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(b->critical_rate > 0, f, "bond critical_rate", b->critical_rate, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(b->floor > 0, f, "bond floor", b->floor, -1)) != MPM_OK) return s;
+    return mpm_want(b->length >= 0, f, "bond length", b->length, -1);
 }
 
 MPM_API mpm_real mpm_bond_increment(mpm_bond *b, mpm_real amount, mpm_real dt)
 {
     mpm_real factor;
     if (!(amount > 0)) return 0;
-    factor = 1 - mpm__bond_log(amount / (b->critical_rate * dt));
+    factor = 1 - mpm_log(amount / (b->critical_rate * dt));
     if (factor < b->floor) {
         factor = b->floor;
         b->floor_hits++;
@@ -457,7 +448,7 @@ static inline mpm_real mpm__von_mises(const mpm_points *q, int32_t i)
     const mpm_real xx = q->stress[0][i], yy = q->stress[1][i], zz = q->stress[2][i];
     const mpm_real yz = q->stress[3][i], xz = q->stress[4][i], xy = q->stress[5][i];
     const mpm_real d = (xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx);
-    return mpm__sqrt(d / 2 + 3 * (yz * yz + xz * xz + xy * xy));
+    return mpm_sqrt(d / 2 + 3 * (yz * yz + xz * xz + xy * xy));
 }
 
 MPM_API mpm_real mpm_bond_growth(mpm_bond *b, const mpm_world *w, int32_t i, mpm_real dt)
@@ -765,15 +756,15 @@ MPM_API mpm_status mpm_pull_begin(mpm_pull *p, const mpm_world *w, const mpm_pul
     const int known = d->upper >= 0 && d->upper < w->bodies && d->lower >= 0 && d->lower < w->bodies;
     mpm_status s;
     memset(p, 0, sizeof *p);
-    if ((s = mpm__want(known && d->upper != d->lower, f, "pull bodies", (mpm_real)d->lower, d->upper)) != MPM_OK)
+    if ((s = mpm_want(known && d->upper != d->lower, f, "pull bodies", (mpm_real)d->lower, d->upper)) != MPM_OK)
         return s;
-    if ((s = mpm__want(1, f, "pull below", d->below, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(d->above > d->below, f, "pull above", d->above, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(d->axes > 0 && d->axes < 8, f, "pull axes", (mpm_real)d->axes, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(d->velocity > 0, f, "pull velocity", d->velocity, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(d->ramp >= 0, f, "pull ramp", d->ramp, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(d->sample > 0, f, "pull sample", d->sample, -1)) != MPM_OK) return s;
-    if ((s = mpm__want(d->area > 0, f, "pull area", (mpm_real)d->area, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(1, f, "pull below", d->below, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->above > d->below, f, "pull above", d->above, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->axes > 0 && d->axes < 8, f, "pull axes", (mpm_real)d->axes, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->velocity > 0, f, "pull velocity", d->velocity, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->ramp >= 0, f, "pull ramp", d->ramp, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->sample > 0, f, "pull sample", d->sample, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->area > 0, f, "pull area", (mpm_real)d->area, -1)) != MPM_OK) return s;
     p->desc = *d;
     p->grip[0].body = d->upper;
     p->grip[0].low = mpm__between_planes(w, d->above);
@@ -930,29 +921,29 @@ static inline mpm_status mpm__logistic_scale(mpm_logistic *f, int axis, const do
     double low = x[0], high = x[0];
     long t;
     for (t = 0; t < n; t++) {
-        if (!(x[t] - x[t] >= 0)) return mpm__fail(fault, MPM_ERR_NAN, field, (mpm_real)x[t], t); /* inf too */
+        if (!(x[t] - x[t] >= 0)) return mpm_fail(fault, MPM_ERR_NAN, field, (mpm_real)x[t], t); /* inf too */
         if (x[t] < low) low = x[t];
         if (x[t] > high) high = x[t];
     }
     f->center[axis] = low + (high - low) / 2;
     f->half[axis] = (high - low) / 2;
-    if (!(f->half[axis] > 0)) return mpm__fail(fault, MPM_ERR_ARGUMENT, field, (mpm_real)low, -1);
+    if (!(f->half[axis] > 0)) return mpm_fail(fault, MPM_ERR_ARGUMENT, field, (mpm_real)low, -1);
     return MPM_OK;
 }
 
 static inline mpm_status mpm__logistic_check(const int *outcome, long n, double ridge, int steps, mpm_fault *fault)
 {
     long t, ones = 0;
-    mpm_status s = mpm__want(n >= MPM__TERMS, fault, "logistic n", (mpm_real)n, -1);
-    if (s == MPM_OK) s = mpm__want(ridge >= 0, fault, "logistic ridge", (mpm_real)ridge, -1);
-    if (s == MPM_OK) s = mpm__want(steps > 0, fault, "logistic steps", (mpm_real)steps, -1);
+    mpm_status s = mpm_want(n >= MPM__TERMS, fault, "logistic n", (mpm_real)n, -1);
+    if (s == MPM_OK) s = mpm_want(ridge >= 0, fault, "logistic ridge", (mpm_real)ridge, -1);
+    if (s == MPM_OK) s = mpm_want(steps > 0, fault, "logistic steps", (mpm_real)steps, -1);
     if (s != MPM_OK) return s;
     for (t = 0; t < n; t++) {
         if (outcome[t] != 0 && outcome[t] != 1)
-            return mpm__fail(fault, MPM_ERR_ARGUMENT, "logistic outcome", (mpm_real)outcome[t], t);
+            return mpm_fail(fault, MPM_ERR_ARGUMENT, "logistic outcome", (mpm_real)outcome[t], t);
         ones += outcome[t];
     }
-    return mpm__want(ones > 0 && ones < n, fault, "logistic outcome", (mpm_real)outcome[0], -1);
+    return mpm_want(ones > 0 && ones < n, fault, "logistic outcome", (mpm_real)outcome[0], -1);
 }
 
 MPM_API mpm_status mpm_bond_logistic_fit(mpm_logistic *fit, const double *x1, const double *x2, const int *outcome,

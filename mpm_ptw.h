@@ -233,12 +233,14 @@ typedef struct mpm_material {
     /* artificial bulk viscosity, added to the pressure while the material is compressed at rate D:
        rho cell D (viscosity_quadratic cell D + viscosity_linear c_bulk). Both 0: none. */
     mpm_real viscosity_linear, viscosity_quadratic;
-
-    /* counters of mpm_material_stress; the caller may read and reset them */
-    unsigned long shear_floor_hits;  /* points whose shear modulus was bounded */
-    unsigned long iteration_hits;    /* returns that ended at the iteration cap */
-    unsigned long erf_clip_hits;     /* yielding points beyond r = 1, where the erf bound acts */
 } mpm_material;
+
+/* What mpm_material_stress counts in the world's tally. */
+enum {
+    MPM_TALLY_SHEAR_FLOOR = 0, /* points whose shear modulus was bounded */
+    MPM_TALLY_ITERATION,       /* returns that ended at the iteration cap */
+    MPM_TALLY_ERF_CLIP         /* yielding points beyond r = 1, where the erf bound acts */
+};
 
 /* ---- presets ------------------------------------------------------------------------------- */
 
@@ -306,14 +308,14 @@ MPM_API void mpm_material_wave_speeds(const mpm_material *m, mpm_real density, m
 /* The constitutive update (A 3.38 - 3.44, A1 - A11), an mpm_stress_fn: rotation, elastic trial,
    yield, return to the flow stress, equation of state with implicit energy, adiabatic heating,
    plastic work.
-   material  an mpm_material *, valid under mpm_material_check; its counters are written, so two
-             threads need two copies
+   material  a const mpm_material *, valid under mpm_material_check
+   The block's tally, unless it is NULL, counts under MPM_TALLY_*.
    Returns MPM_OK; MPM_CLAMPED if a shear modulus was bounded; MPM_NOT_CONVERGED if a return ended
    at its iteration cap (bracketed: the value is usable); MPM_ERR_ARGUMENT (count < 0, dt <= 0);
    MPM_ERR_NAN, MPM_ERR_STATE with the first bad point in block->fault. Blocks of up to 64 points
    are unchanged on failure; of longer ones, the points before the bad group of 64 are updated.
    Tests: 11_update. */
-MPM_API mpm_status mpm_material_stress(void *material, const mpm_block *block);
+MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *block);
 
 #ifdef __cplusplus
 }
@@ -948,8 +950,14 @@ static inline mpm_status mpm__ptw_screen(const mpm_material *m, const mpm_block 
     return MPM_OK;
 }
 
-/* The shear modulus of every point. Neighbours often share a temperature to the last bit. */
-static inline void mpm__ptw_shear_lanes(mpm_material *m, const mpm_block *b, mpm__ptw_lanes *a)
+static inline void mpm__ptw_count(const mpm_block *b, int what, int n)
+{
+    if (b->tally) b->tally[what] += n;
+}
+
+/* The shear modulus of every point; returns how many were bounded. Neighbours often share a temperature to the
+   last bit. */
+static inline int mpm__ptw_shear_lanes(const mpm_material *m, const mpm_block *b, mpm__ptw_lanes *a)
 {
     mpm_real least = mpm__ptw_shear_floor(m), last = -1, mu = 0;
     int i, hits = 0;
@@ -961,7 +969,8 @@ static inline void mpm__ptw_shear_lanes(mpm_material *m, const mpm_block *b, mpm
         hits += mu < least;
         a->shear[i] = mpm__ptw_max(mu, least);
     }
-    m->shear_floor_hits += (unsigned long)hits;
+    mpm__ptw_count(b, MPM_TALLY_SHEAR_FLOOR, hits);
+    return hits;
 }
 
 /* Splits stress and strain increment into mean and deviator (A3, A4). */
@@ -1294,8 +1303,8 @@ static inline int mpm__ptw_suspects(const mpm_material *m, const mpm__ptw_shared
 }
 
 /* Takes the answer of a search: increment, flow stress and the scaled deviator go to *a. */
-static inline void mpm__ptw_take(mpm_material *m, mpm__ptw_lanes *a, const mpm__ptw_search *q,
-                                 mpm_real flow, mpm_real per_step)
+static inline void mpm__ptw_take(const mpm_material *m, const mpm_block *b, mpm__ptw_lanes *a,
+                                 const mpm__ptw_search *q, mpm_real flow, mpm_real per_step)
 {
     int j, i = q->lane;
     mpm_real factor;
@@ -1307,7 +1316,7 @@ static inline void mpm__ptw_take(mpm_material *m, mpm__ptw_lanes *a, const mpm__
     a->yielding[a->yield_count++] = i;
     if (m->strength == MPM_STRENGTH_PTW && !m->erf_literal &&
         mpm__ptw_overdriven(&q->point, q->d * per_step))
-        m->erf_clip_hits++;
+        mpm__ptw_count(b, MPM_TALLY_ERF_CLIP, 1);
 }
 
 /* Runs the searches of one group side by side, so that the processor can overlap them: each round
@@ -1329,7 +1338,7 @@ static inline int mpm__ptw_search_all(const mpm_material *m, const mpm__ptw_shar
 
 /* Sorts out the points that may yield and returns them to the flow stress. Touches only *a (and
    counters), so that a failure leaves the block as it was. */
-static inline mpm_status mpm__ptw_yield(mpm_material *m, const mpm__ptw_shared *h,
+static inline mpm_status mpm__ptw_yield(const mpm_material *m, const mpm__ptw_shared *h,
                                         const mpm__ptw_bounds *bounds, const mpm_block *b,
                                         mpm__ptw_lanes *a)
 {
@@ -1365,9 +1374,9 @@ static inline mpm_status mpm__ptw_yield(mpm_material *m, const mpm__ptw_shared *
         if (!mpm__ptw_finite(q->d) || !mpm__ptw_finite(flow[i]))
             return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "flow stress of point", q->d,
                                  a->first + q->lane);
-        mpm__ptw_take(m, a, q, flow[i], per_step);
+        mpm__ptw_take(m, b, a, q, flow[i], per_step);
     }
-    m->iteration_hits += (unsigned long)capped;
+    mpm__ptw_count(b, MPM_TALLY_ITERATION, capped);
     return capped ? MPM_NOT_CONVERGED : MPM_OK;
 }
 
@@ -1441,12 +1450,12 @@ static inline void mpm__ptw_close(const mpm_material *m, const mpm_block *b, con
         for (i = 0; i < a->count; i++) b->stress[j][k + i] = a->trial[j][i];
 }
 
-MPM_API mpm_status mpm_material_stress(void *material, const mpm_block *block)
+MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *block)
 {
-    mpm_material *m = (mpm_material *)material;
+    const mpm_material *m = (const mpm_material *)material;
     const mpm_block *b = block;
     mpm_status status = MPM_OK, s;
-    unsigned long floor_hits = m->shear_floor_hits;
+    int bounded = 0;
     mpm__ptw_shared h;
     mpm__ptw_bounds bounds;
     mpm__ptw_lanes a;
@@ -1458,7 +1467,7 @@ MPM_API mpm_status mpm_material_stress(void *material, const mpm_block *block)
     for (a.first = 0; a.first < b->count; a.first += MPM__PTW_LANES) {
         a.count = b->count - a.first < MPM__PTW_LANES ? b->count - a.first : MPM__PTW_LANES;
         mpm__ptw_split(b, &a);
-        mpm__ptw_shear_lanes(m, b, &a);
+        bounded += mpm__ptw_shear_lanes(m, b, &a);
         if (m->rotation == MPM_ROTATION_PROPER) mpm__ptw_rotate_proper(b, &a);
         else mpm__ptw_rotate_jaumann(b, &a);
         mpm__ptw_try(&a);
@@ -1468,7 +1477,7 @@ MPM_API mpm_status mpm_material_stress(void *material, const mpm_block *block)
         mpm__ptw_commit(m, b, &a);
         mpm__ptw_close(m, b, &a);
     }
-    if (status == MPM_OK && m->shear_floor_hits != floor_hits) status = MPM_CLAMPED;
+    if (status == MPM_OK && bounded > 0) status = MPM_CLAMPED;
     return status;
 }
 

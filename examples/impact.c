@@ -50,7 +50,6 @@ static int write_picture(const impact *s, const impact_case *c, output *o)
 static int write_summary(const impact *s, const impact_case *c, const output *o, const option *options, int n)
 {
     const impact_result r = impact_measure(s, c);
-    const mpm_material *a = &s->material[IMPACT_PARTICLE], *b = &s->material[IMPACT_SUBSTRATE];
     const mpm_world *w = &s->world;
     const double start = s->start.kinetic, cpu = o->cpu;
     char path[MPM_IO_PATH];
@@ -101,8 +100,8 @@ static int write_summary(const impact *s, const impact_case *c, const output *o,
     mpm_io_json_number(&j, "energy_bond_fraction", case_share(w->ledger.bond, start));
     mpm_io_json_integer(&j, "floor_hits", s->bond.floor_hits);
     mpm_io_json_integer(&j, "bond_increments", s->bond.increments);
-    mpm_io_json_integer(&j, "shear_floor_hits", (long long)(a->shear_floor_hits + b->shear_floor_hits));
-    mpm_io_json_integer(&j, "iteration_hits", (long long)(a->iteration_hits + b->iteration_hits));
+    mpm_io_json_integer(&j, "shear_floor_hits", (long long)w->tally[MPM_TALLY_SHEAR_FLOOR]);
+    mpm_io_json_integer(&j, "iteration_hits", (long long)w->tally[MPM_TALLY_ITERATION]);
     mpm_io_json_integer(&j, "sorts", w->sorts);
     options_json(&j, options, n);
     if (mpm_io_json_end(&j, &fault) < 0) return report(&fault, path);

@@ -663,9 +663,9 @@ static void test_checkpoint(void)
 /* ---- a world: restart and cut --------------------------------------------------------------- */
 
 /* A linear elastic response, stress += E strain: enough to make the points interact. */
-static mpm_status elastic(void *material, const mpm_block *b)
+static mpm_status elastic(const void *material, const mpm_block *b)
 {
-    mpm_real young = *(mpm_real *)material;
+    mpm_real young = *(const mpm_real *)material;
     int p, k;
     for (k = 0; k < 6; k++)
         for (p = 0; p < b->count; p++) b->stress[k][p] += young * b->strain[k][p];

@@ -52,7 +52,7 @@ static inline manufactured manufactured_default(manufactured_motion motion)
 }
 
 /* The stress, an mpm_stress_fn. The user fields carry F F^T - I, which F <- (I + grad v dt) F brings along. */
-static inline mpm_status manufactured_stress(void *material, const mpm_block *b)
+static inline mpm_status manufactured_stress(const void *material, const mpm_block *b)
 {
     const manufactured *m = (const manufactured *)material;
     static const int at[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};

@@ -4,7 +4,7 @@
 
 /* The bar of the closed forms: stress E (rho0/rho - 1) along x is linear in the displacement gradient,
    at any amplitude, so that the wave equation holds exactly. */
-static mpm_status bar_stress(void *material, const mpm_block *b)
+static mpm_status bar_stress(const void *material, const mpm_block *b)
 {
     const mpm_material *m = (const mpm_material *)material;
     int i;

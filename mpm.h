@@ -102,8 +102,8 @@ typedef double mpm_real;
 #define mpm_init mpm_init_f32
 #define mpm_free mpm_free_f32
 #define mpm_body_add mpm_body_add_f32
-#define mpm_grow mpm_grow_f32
-#define mpm_grow_bytes mpm_grow_bytes_f32
+#define mpm_reserve mpm_reserve_f32
+#define mpm_reserve_bytes mpm_reserve_bytes_f32
 #define mpm_wave_speed_p mpm_wave_speed_p_f32
 #define mpm_wave_speed_s mpm_wave_speed_s_f32
 #define mpm_time_step mpm_time_step_f32
@@ -119,7 +119,7 @@ typedef double mpm_real;
 #define mpm_stress mpm_stress_f32
 #define mpm_move mpm_move_f32
 #define mpm_body_totals mpm_body_totals_f32
-#define mpm_memory mpm_memory_f32
+#define mpm_bytes_used mpm_bytes_used_f32
 #endif
 
 #ifdef __cplusplus
@@ -306,10 +306,10 @@ MPM_API int mpm_shape_contains(const mpm_shape *s, mpm_real x, mpm_real y, mpm_r
 
 typedef enum mpm_geometry { MPM_3D = 0, MPM_PLANE_STRAIN, MPM_AXISYMMETRIC } mpm_geometry;
 
-typedef enum mpm_shape_function {
+typedef enum mpm_basis {
     MPM_LINEAR = 0,  /* trilinear hexahedra, the thesis's (A 3.20) */
     MPM_GIMP         /* uGIMP, Bardenhagen and Kober 2004: points are boxes of fixed size */
-} mpm_shape_function;
+} mpm_basis;
 
 /* What happens at a side of the grid. */
 typedef enum mpm_side {
@@ -341,7 +341,7 @@ typedef enum mpm_normal_rule {
    cells, points and bodies. */
 typedef struct mpm_desc {
     mpm_geometry geometry;
-    mpm_shape_function shape;
+    mpm_basis basis;
     mpm_real origin[3];      /* lowest corner of the grid [length] */
     mpm_real cell;           /* cell edge [length], > 0 */
     int32_t cells[3];        /* cells per direction, >= 1; cells[1] is ignored in two dimensions */
@@ -372,10 +372,10 @@ MPM_API mpm_desc mpm_desc_default(void);
 
 /* Flags of a point: where on its body it was born. */
 enum {
-    MPM_SURFACE = 1,  /* within one shell of a free face: the points that contact and bond */
-    MPM_TOP = 2,      /* within one spacing of a cylinder's or box's upper face */
-    MPM_BOTTOM = 4,   /* ... of its lower face */
-    MPM_SIDES = 8     /* ... of its circumference */
+    MPM_POINT_SURFACE = 1,  /* within one shell of a free face: the points that contact and bond */
+    MPM_FACE_TOP = 2,      /* within one spacing of a cylinder's or box's upper face */
+    MPM_FACE_BOTTOM = 4,   /* ... of its lower face */
+    MPM_FACE_RIM = 8     /* ... of its circumference */
 };
 
 /* The points of all bodies, one array per field. Body b owns [first, first + count); of these the
@@ -395,7 +395,7 @@ typedef struct mpm_points {
     mpm_real *plastic_work;   /* per current volume [stress] */
     mpm_real *bond;           /* D, the bonding history variable (A 4.3, 4.16) */
     mpm_real *user[MPM_USER_FIELDS];
-    uint8_t *flags;           /* MPM_SURFACE ... */
+    uint8_t *flags;           /* MPM_POINT_SURFACE ... */
     int32_t *id;              /* number of the point as created: survives sorting */
 } mpm_points;
 
@@ -411,9 +411,9 @@ typedef struct mpm_body_desc {
     mpm_stress_fn stress;    /* constitutive update, or NULL for a body without stress */
     const void *material;    /* passed to it */
     mpm_real wave_p, wave_s; /* longitudinal and shear wave speeds: time step and dampers */
-    int absorb;              /* faces with a viscous damper: MPM_BOTTOM | MPM_SIDES (A 3.45) */
-    mpm_real absorb_a, absorb_b; /* damper factors, normal and tangential (thesis: 1) */
-    mpm_real shell;          /* thickness of the MPM_SURFACE layer in spacings */
+    int absorb;              /* faces with a viscous damper: MPM_FACE_BOTTOM | MPM_FACE_RIM (A 3.45) */
+    mpm_real absorb_normal, absorb_shear; /* damper factors, normal and tangential (thesis: 1) */
+    mpm_real shell;          /* thickness of the MPM_POINT_SURFACE layer in spacings */
 } mpm_body_desc;
 
 MPM_API mpm_body_desc mpm_body_desc_default(void);
@@ -441,7 +441,7 @@ typedef struct mpm_node {
     int32_t index;         /* number of the node in the grid */
     int32_t next;          /* next slot of this node, or -1 */
     int32_t body;
-    int32_t sides;         /* bit s: on side s of the grid; bit 6: contact */
+    int32_t flags;         /* bit s: on side s of the grid; bit 6: contact */
     int32_t pair;          /* first pair at a contact node; those of one node follow each other */
 } mpm_node;
 
@@ -553,8 +553,8 @@ MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *b);
 /* Makes room after MPM_ERR_FULL: at least doubles nodes, runs and pairs, in the caller's block
    (used instead of the old one, which is then free) or with NULL in memory from MPM_MALLOC. The
    points are untouched; repeat the step from mpm_locate. MPM_ERR_MEMORY. */
-MPM_API mpm_status mpm_grow(mpm_world *w, void *memory, size_t bytes);
-MPM_API size_t mpm_grow_bytes(const mpm_world *w); /* bytes that mpm_grow wants */
+MPM_API mpm_status mpm_reserve(mpm_world *w, void *memory, size_t bytes);
+MPM_API size_t mpm_reserve_bytes(const mpm_world *w); /* bytes that mpm_reserve wants */
 
 /* Longitudinal and shear wave speeds of an isotropic solid (A 3.37, 3.46). E > 0, -1 < nu < 1/2. */
 MPM_API mpm_real mpm_wave_speed_p(mpm_real young, mpm_real poisson, mpm_real density);
@@ -572,7 +572,7 @@ MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt);
 
 /* Finds each point's base node, retires points outside the grid, restores cell order when it has
    decayed, and gives every body slots for the nodes its points touch.
-   MPM_ERR_FULL: see mpm_grow; MPM_ERR_NAN: position of point fault.index. Points are unchanged. */
+   MPM_ERR_FULL: see mpm_reserve; MPM_ERR_NAN: position of point fault.index. Points are unchanged. */
 MPM_API mpm_status mpm_locate(mpm_world *w);
 
 /* Mass and momentum to the nodes (A 3.23, 3.24), then essential boundary conditions. */
@@ -617,7 +617,7 @@ typedef struct mpm_totals {
 } mpm_totals;
 
 MPM_API mpm_totals mpm_body_totals(const mpm_world *w, int32_t body); /* body -1: all */
-MPM_API size_t mpm_memory(const mpm_world *w);                         /* bytes in use */
+MPM_API size_t mpm_bytes_used(const mpm_world *w);                         /* bytes in use */
 MPM_API const char *mpm_status_text(mpm_status s);
 MPM_API const char *mpm_version(void);
 
@@ -897,7 +897,7 @@ MPM_API mpm_body_desc mpm_body_desc_default(void)
     mpm_body_desc b;
     memset(&b, 0, sizeof b);
     b.temperature = 298;
-    b.absorb_a = b.absorb_b = 1;
+    b.absorb_normal = b.absorb_shear = 1;
     b.shell = 1;
     return b;
 }
@@ -905,8 +905,8 @@ MPM_API mpm_body_desc mpm_body_desc_default(void)
 /* The choices of a description: each one of its list. */
 static inline mpm_status mpm__desc_choices(const mpm_desc *d, mpm_fault *f)
 {
-    const char *const name[] = {"geometry", "shape", "contact", "normal", "separation"};
-    const int value[] = {(int)d->geometry, (int)d->shape, (int)d->contact, (int)d->normal, d->separation};
+    const char *const name[] = {"geometry", "basis", "contact", "normal", "separation"};
+    const int value[] = {(int)d->geometry, (int)d->basis, (int)d->contact, (int)d->normal, d->separation};
     const int last[] = {MPM_AXISYMMETRIC, MPM_GIMP, MPM_CONTACT_NONE, MPM_NORMAL_LOGISTIC, 1};
     mpm_status s = MPM_OK;
     int i;
@@ -956,7 +956,7 @@ MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *f)
 static inline void mpm__grid_sizes(mpm_world *w)
 {
     int a;
-    w->ghost = w->desc.shape == MPM_GIMP ? 1 : 0;
+    w->ghost = w->desc.basis == MPM_GIMP ? 1 : 0;
     for (a = 0; a < 3; a++) {
         w->support[a] = w->ghost ? 3 : 2;
         w->nodes_per_axis[a] = w->desc.cells[a] + 1 + 2 * w->ghost;
@@ -1042,7 +1042,7 @@ MPM_API size_t mpm_bytes(const mpm_desc *d)
     return n == (size_t)-1 ? 0 : n;
 }
 
-MPM_API size_t mpm_memory(const mpm_world *w) { return w->memory_bytes + w->work_bytes; }
+MPM_API size_t mpm_bytes_used(const mpm_world *w) { return w->memory_bytes + w->work_bytes; }
 
 MPM_API mpm_status mpm_init(mpm_world *w, const mpm_desc *d, void *memory, size_t bytes)
 {
@@ -1101,7 +1101,7 @@ static inline int32_t mpm__grown(const mpm_world *w)
     return need > 1000000000 ? 2000000000 : 2 * need;
 }
 
-MPM_API size_t mpm_grow_bytes(const mpm_world *w)
+MPM_API size_t mpm_reserve_bytes(const mpm_world *w)
 {
     mpm_world copy = *w;
     return mpm__layout_work(&copy, NULL, mpm__grown(w));
@@ -1115,10 +1115,10 @@ static inline void mpm__grid_reset(mpm_world *w)
     w->nodes = w->runs = w->pairs = w->pairs_possible = 0;
 }
 
-MPM_API mpm_status mpm_grow(mpm_world *w, void *memory, size_t bytes)
+MPM_API mpm_status mpm_reserve(mpm_world *w, void *memory, size_t bytes)
 {
     const int32_t nodes = mpm__grown(w);
-    size_t need = mpm_grow_bytes(w);
+    size_t need = mpm_reserve_bytes(w);
     void *block = memory ? memory : MPM_MALLOC(need);
     if (!block || (memory && bytes < need))
         return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)need, -1);
@@ -1154,8 +1154,8 @@ static inline mpm_status mpm__body_check(const mpm_world *w, const mpm_body_desc
     if ((st = mpm_want(b->temperature >= 0, f, "temperature", b->temperature, -1)) != MPM_OK) return st;
     if ((st = mpm_want(b->wave_p >= 0, f, "wave_p", b->wave_p, -1)) != MPM_OK) return st;
     if ((st = mpm_want(b->wave_s >= 0, f, "wave_s", b->wave_s, -1)) != MPM_OK) return st;
-    if ((st = mpm_want(b->absorb_a >= 0, f, "absorb_a", b->absorb_a, -1)) != MPM_OK) return st;
-    if ((st = mpm_want(b->absorb_b >= 0, f, "absorb_b", b->absorb_b, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->absorb_normal >= 0, f, "absorb_normal", b->absorb_normal, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->absorb_shear >= 0, f, "absorb_shear", b->absorb_shear, -1)) != MPM_OK) return st;
     if ((st = mpm_want(b->shell >= 0, f, "shell", b->shell, -1)) != MPM_OK) return st;
     return MPM_OK;
 }
@@ -1168,15 +1168,15 @@ static inline uint8_t mpm__flags(const mpm_body_desc *b, const mpm_real *x, int 
     int f = 0, d;
     if (s->kind != MPM_SHAPE_ELLIPSOID) {
         mpm_shape wide = *s; /* the circumference alone: without upper and lower face */
-        if (x[2] > s->center[2] + s->half[2] - b->spacing) f |= MPM_TOP;
-        if (x[2] < s->center[2] - s->half[2] + b->spacing) f |= MPM_BOTTOM;
+        if (x[2] > s->center[2] + s->half[2] - b->spacing) f |= MPM_FACE_TOP;
+        if (x[2] < s->center[2] - s->half[2] + b->spacing) f |= MPM_FACE_BOTTOM;
         wide.half[2] *= 4;
-        if (!mpm__contains(&wide, x, flat, b->spacing)) f |= MPM_SIDES;
+        if (!mpm__contains(&wide, x, flat, b->spacing)) f |= MPM_FACE_RIM;
     }
-    if (b->absorb & MPM_BOTTOM) core.center[2] -= 2 * s->half[2], core.half[2] += 2 * s->half[2];
-    if (b->absorb & MPM_SIDES)
+    if (b->absorb & MPM_FACE_BOTTOM) core.center[2] -= 2 * s->half[2], core.half[2] += 2 * s->half[2];
+    if (b->absorb & MPM_FACE_RIM)
         for (d = 0; d < 2; d++) core.half[d] += 2 * b->shell * b->spacing + s->half[d];
-    if (!mpm__contains(&core, x, flat, b->shell * b->spacing * (1 - 64 * MPM_EPSILON))) f |= MPM_SURFACE;
+    if (!mpm__contains(&core, x, flat, b->shell * b->spacing * (1 - 64 * MPM_EPSILON))) f |= MPM_POINT_SURFACE;
     return (uint8_t)f;
 }
 
@@ -1265,8 +1265,8 @@ static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
         p->temperature[i] = d->temperature;
         p->flags[i] = mpm__flags(d, x, flat);
         p->id[i] = i;
-        if (p->flags[i] & MPM_BOTTOM) b->mass[0] += p->mass[i];
-        if (p->flags[i] & MPM_SIDES) b->mass[1] += p->mass[i];
+        if (p->flags[i] & MPM_FACE_BOTTOM) b->mass[0] += p->mass[i];
+        if (p->flags[i] & MPM_FACE_RIM) b->mass[1] += p->mass[i];
         mass += (double)p->mass[i];
         i++;
     }
@@ -1313,7 +1313,7 @@ MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *desc)
         s = mpm_locate(w);
         if (s == MPM_OK && w->owns_work && w->nodes + w->nodes / 2 > w->node_capacity) s = MPM_ERR_FULL;
         if (s != MPM_ERR_FULL || !w->owns_work) break;
-        if ((s = mpm_grow(w, NULL, 0)) != MPM_OK) break;
+        if ((s = mpm_reserve(w, NULL, 0)) != MPM_OK) break;
     }
     if (s < 0) {
         w->bodies--;
@@ -1468,7 +1468,7 @@ static inline int32_t mpm__slot(mpm_world *w, int32_t body, const int32_t *at)
     }
     node->index = index;
     node->body = body;
-    node->sides = sides;
+    node->flags = sides;
     node->next = w->head[index];
     w->head[index] = s;
     return s;
@@ -1765,7 +1765,7 @@ static inline void mpm__constrain(const mpm_world *w, const mpm_node *n, mpm_rea
 {
     int s, d;
     for (s = 0; s < 6; s++) {
-        if (!(n->sides >> s & 1) || w->desc.side[s] == MPM_SIDE_WALL) continue;
+        if (!(n->flags >> s & 1) || w->desc.side[s] == MPM_SIDE_WALL) continue;
         for (d = 0; d < 3; d++) {
             if (w->desc.side[s] == MPM_SIDE_SYMMETRY && d != s / 2) continue;
             if (removed) removed[d] += (double)v[d];
@@ -1781,7 +1781,7 @@ static inline void mpm__walls(mpm_world *w, mpm_node *n, mpm_real dt)
     for (s = 0; s < 6; s++) {
         const int axis = s / 2;
         mpm_real out, slip = 0, keep, jn, change[3] = {0, 0, 0};
-        if (!(n->sides >> s & 1) || w->desc.side[s] != MPM_SIDE_WALL) continue;
+        if (!(n->flags >> s & 1) || w->desc.side[s] != MPM_SIDE_WALL) continue;
         out = (s & 1) ? -n->momentum[axis] : n->momentum[axis];
         if (out >= 0) continue;
         jn = -out;
@@ -1837,7 +1837,7 @@ MPM_API void mpm_p2g(mpm_world *w)
     MPM__EACH_RUN(w, MPM__CALL);
 #undef MPM__CALL
     for (i = 0; i < w->nodes; i++)
-        if (w->node[i].sides) mpm__constrain(w, &w->node[i], w->node[i].momentum, NULL);
+        if (w->node[i].flags) mpm__constrain(w, &w->node[i], w->node[i].momentum, NULL);
 }
 
 MPM__KERNEL void mpm__forces_run(mpm_world *w, const mpm_run *r, int k, int ky, int hoop)
@@ -1892,7 +1892,7 @@ static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r, mpm_real dt)
             for (face = 0; face < 2; face++) {
                 const int32_t i = at + p;
                 mpm_real v[3], normal[3] = {0, 0, 1}, vn = 0, cn, ct, t[3];
-                if (!(q->flags[i] & d->absorb & (face ? MPM_SIDES : MPM_BOTTOM))) continue;
+                if (!(q->flags[i] & d->absorb & (face ? MPM_FACE_RIM : MPM_FACE_BOTTOM))) continue;
                 if (face) { /* radial, whatever the section */
                     mpm_real x = q->x[0][i] - d->shape.center[0], y = ky > 1 ? q->x[1][i] - d->shape.center[1] : 0;
                     mpm_real radius = mpm_sqrt(x * x + y * y);
@@ -1900,8 +1900,8 @@ static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r, mpm_real dt)
                     normal[1] = radius > 0 ? y / radius : 0;
                     normal[2] = 0;
                 }
-                cn = d->absorb_a * d->density * d->wave_p * b->area[face] * q->mass[i] / b->mass[face];
-                ct = d->absorb_b * d->density * d->wave_s * b->area[face] * q->mass[i] / b->mass[face];
+                cn = d->absorb_normal * d->density * d->wave_p * b->area[face] * q->mass[i] / b->mass[face];
+                ct = d->absorb_shear * d->density * d->wave_s * b->area[face] * q->mass[i] / b->mass[face];
                 for (c = 0; c < 3; c++) v[c] = mpm__value(&s, p, k, ky, V[c]);
                 for (c = 0; c < 3; c++) vn += v[c] * normal[c];
                 mpm__products(&s, p, k, ky, N);
@@ -1956,13 +1956,13 @@ MPM_API void mpm_grid_update(mpm_world *w, mpm_real dt)
     int d;
     for (i = 0; i < w->nodes; i++) {
         mpm_node *n = &w->node[i];
-        if (n->sides) {
+        if (n->flags) {
             double removed[3] = {0, 0, 0};
             mpm__constrain(w, n, n->force, removed);
             for (d = 0; d < 3; d++) w->ledger.impulse[d] -= removed[d] * (double)dt;
         }
         for (d = 0; d < 3; d++) n->momentum[d] += n->force[d] * dt;
-        if (n->sides) mpm__walls(w, n, dt);
+        if (n->flags) mpm__walls(w, n, dt);
     }
 }
 
@@ -2141,7 +2141,7 @@ static inline void mpm__show_run(mpm_world *w, const mpm_run *r, int fit)
                 const mpm_node *node = &w->node[slot[a]];
                 const int step[3] = {a % k, a / k % ky, a / k / ky};
                 mpm_real x[3] = {0, 0, 0};
-                if (!(node->sides & MPM_NODE_CONTACT) || !(N[a] > 0)) continue;
+                if (!(node->flags & MPM_NODE_CONTACT) || !(N[a] > 0)) continue;
                 for (d = 0; d < 3; d++) {
                     if (d == 1 && ky == 1) continue;
                     x[d] = (w->points.x[d][at + p] - w->desc.origin[d]) * inv -
@@ -2190,7 +2190,7 @@ static inline void mpm__separations(mpm_world *w)
 
 /* Whether a body weighs enough at a node to be in contact there. In axisymmetry points are rings, as
    heavy as their radius makes them; on a symmetry plane half of a node lies behind the mirror. */
-static inline int mpm__weighs(const mpm_world *w, const mpm_node *n)
+static inline int mpm__counts_in_contact(const mpm_world *w, const mpm_node *n)
 {
     const mpm_body *b = &w->body[n->body];
     const int rings = w->desc.geometry == MPM_AXISYMMETRIC;
@@ -2202,7 +2202,7 @@ static inline int mpm__weighs(const mpm_world *w, const mpm_node *n)
         point = b->desc.density * b->desc.spacing * b->desc.spacing * 2 * MPM_PI * r;
     }
     for (s = rings ? 2 : 0; s < 6; s++)
-        if ((n->sides >> s & 1) && w->desc.side[s] == MPM_SIDE_SYMMETRY) point /= 2;
+        if ((n->flags >> s & 1) && w->desc.side[s] == MPM_SIDE_SYMMETRY) point /= 2;
     if (w->desc.contact == MPM_CONTACT_WELD) point = 0; /* one velocity everywhere, without exception */
     return n->mass > w->desc.contact_cutoff * point && n->mass > w->desc.mass_cutoff * b->point_mass;
 }
@@ -2215,12 +2215,12 @@ static inline void mpm__pairs_at(mpm_world *w, int32_t i)
     for (b = i; b >= 0; b = w->node[b].next)
         for (a = w->node[b].next; a >= 0; a = w->node[a].next) {
             mpm_pair *pair = &w->pair[w->pairs];
-            if (!mpm__weighs(w, &w->node[a]) || !mpm__weighs(w, &w->node[b])) continue;
+            if (!mpm__counts_in_contact(w, &w->node[a]) || !mpm__counts_in_contact(w, &w->node[b])) continue;
             memset(pair, 0, sizeof *pair);
             pair->a = a;
             pair->b = b;
-            w->node[a].sides |= MPM_NODE_CONTACT;
-            w->node[b].sides |= MPM_NODE_CONTACT;
+            w->node[a].flags |= MPM_NODE_CONTACT;
+            w->node[b].flags |= MPM_NODE_CONTACT;
             w->node[a].pair = w->node[b].pair = first;
             w->pairs++;
         }
@@ -2237,7 +2237,7 @@ MPM_API void mpm_contact_find(mpm_world *w)
     if (w->pairs == 0) return;
     for (i = 0; i < w->runs; i++)
         for (s = 0; s < reach; s++)
-            if (w->node[w->slot[(size_t)i * (size_t)reach + (size_t)s]].sides & MPM_NODE_CONTACT)
+            if (w->node[w->slot[(size_t)i * (size_t)reach + (size_t)s]].flags & MPM_NODE_CONTACT)
                 w->run[i].flags |= MPM_NODE_CONTACT;
     for (i = 0; i < w->runs; i++)
         if (w->run[i].flags & MPM_NODE_CONTACT) mpm__gradient_run(w, &w->run[i]);
@@ -2410,10 +2410,10 @@ MPM_API void mpm_musl(mpm_world *w, mpm_real dt)
     for (i = 0; i < w->nodes; i++) {
         mpm_node *n = &w->node[i];
         int s;
-        if (!n->sides) continue;
+        if (!n->flags) continue;
         mpm__constrain(w, n, n->velocity, NULL);
         for (s = 0; s < 6; s++)
-            if ((n->sides >> s & 1) && w->desc.side[s] == MPM_SIDE_WALL &&
+            if ((n->flags >> s & 1) && w->desc.side[s] == MPM_SIDE_WALL &&
                 ((s & 1) ? n->velocity[s / 2] > 0 : n->velocity[s / 2] < 0))
                 n->velocity[s / 2] = 0;
     }

@@ -34,12 +34,12 @@
            mpm_material_wave_speeds(&al, al.density, &b.wave_p, &b.wave_s);
            b.shape = ball; b.velocity[2] = -900;
            if (mpm_body_add(&w, &b) < 0) return 1;
-           b.shape = plate; b.velocity[2] = 0; b.absorb = MPM_BOTTOM | MPM_SIDES;
+           b.shape = plate; b.velocity[2] = 0; b.absorb = MPM_FACE_BOTTOM | MPM_FACE_RIM;
            if (mpm_body_add(&w, &b) < 0) return 1;
            dt = 0.1 * d.cell / b.wave_p;
            while (w.time < 0.08) {
                mpm_status status = mpm_locate(&w);
-               if (status == MPM_ERR_FULL && mpm_grow(&w, NULL, 0) >= 0) continue;
+               if (status == MPM_ERR_FULL && mpm_reserve(&w, NULL, 0) >= 0) continue;
                if (status < 0) return 1;
                mpm_p2g(&w);
                mpm_forces(&w, dt);
@@ -54,14 +54,14 @@
                mpm_move(&w, dt);
            }
            printf("PBCP %.1f %%, rebound at %.1f m/s\n", mpm_bond_measure_body(&w, -1).pbcp,
-                  mpm_restitution_from(&w, 0, 1, 60).mean);
+                  mpm_rebound_from(&w, 0, 1, 60).mean);
            mpm_free(&w);
            return 0;
        }
 
    CONTENTS
      growth and decision   mpm_bond_*
-     measures              _measure_body, _measure_pair, _interface; mpm_restitution, mpm_splat_measure
+     measures              _measure_body, _measure_pair, _interface; mpm_rebound_of, mpm_splat_measure
      pulling apart         mpm_grip_*, mpm_pull_*
      literature            mpm_bonded_fraction, mpm_relative_strength, mpm_critical_velocity_*
      calibration           mpm_bond_logistic_*
@@ -101,15 +101,15 @@
 #ifdef MPM_FLOAT
 #define mpm_bond_default mpm_bond_default_f32
 #define mpm_bond_check mpm_bond_check_f32
-#define mpm_bond_increment mpm_bond_increment_f32
+#define mpm_bond_law mpm_bond_law_f32
 #define mpm_bond_grow mpm_bond_grow_f32
-#define mpm_bond_growth mpm_bond_growth_f32
+#define mpm_bond_of_point mpm_bond_of_point_f32
 #define mpm_bond_nodes mpm_bond_nodes_f32
 #define mpm_bond_measure_body mpm_bond_measure_body_f32
 #define mpm_bond_measure_pair mpm_bond_measure_pair_f32
 #define mpm_bond_interface mpm_bond_interface_f32
-#define mpm_restitution mpm_restitution_f32
-#define mpm_restitution_from mpm_restitution_from_f32
+#define mpm_rebound_of mpm_rebound_of_f32
+#define mpm_rebound_from mpm_rebound_from_f32
 #define mpm_splat_measure mpm_splat_measure_f32
 #define mpm_grip_apply mpm_grip_apply_f32
 #define mpm_pull_begin mpm_pull_begin_f32
@@ -180,11 +180,11 @@ MPM_API mpm_status mpm_bond_check(const mpm_bond *b, mpm_fault *fault);
    0 adds nothing. dt [time] > 0. The factor 1 - ln(amount/(critical_rate dt)) falls with the rate and
    would turn negative beyond e times the critical rate: it is kept at the floor there, and the hit is
    counted. Test: 30_bond. */
-MPM_API mpm_real mpm_bond_increment(mpm_bond *b, mpm_real amount, mpm_real dt);
+MPM_API mpm_real mpm_bond_law(mpm_bond *b, mpm_real amount, mpm_real dt);
 
 /* Growth of D of one surface point in contact by what it did in the last step, whatever the rule.
    Test: 30_bond. */
-MPM_API mpm_real mpm_bond_growth(mpm_bond *b, const mpm_world *w, int32_t point, mpm_real dt);
+MPM_API mpm_real mpm_bond_of_point(mpm_bond *b, const mpm_world *w, int32_t point, mpm_real dt);
 
 /* Lets D of the surface points grow by what the last step dissipated, where they are in contact:
    within the support of a node that carries two bodies. That is so with desc.separation too: D then also grows
@@ -248,19 +248,19 @@ typedef struct mpm_rebound {
 } mpm_rebound;
 
 /* filter [length/time] >= 0; body: one of the world's. Test: 30_bond. */
-MPM_API mpm_rebound mpm_restitution(const mpm_world *w, int32_t body, mpm_real filter);
+MPM_API mpm_rebound mpm_rebound_of(const mpm_world *w, int32_t body, mpm_real filter);
 
 /* The same relative to another body: velocities less the mass-weighted mean of that body, which drifts
    where its faces are damped. Test: 30_bond. */
-MPM_API mpm_rebound mpm_restitution_from(const mpm_world *w, int32_t body, int32_t other, mpm_real filter);
+MPM_API mpm_rebound mpm_rebound_from(const mpm_world *w, int32_t body, int32_t other, mpm_real filter);
 
 /* The shape of a splat: a particle on a substrate whose upper face was flat, along z. Points faster than
    `filter` are ejected and left out. Extents are those of the points' cubes, half a spacing beyond centres. */
 typedef struct mpm_splat {
     double top;           /* height above which the particle has no point [length] */
     double height, width; /* of the particle; width: twice the largest distance from its initial axis [length] */
-    double compression;   /* 1 - height / initial height; "flattening" in the summaries of the examples */
-    double flattening;    /* width / initial width */
+    double flattening;    /* 1 - height / initial height */
+    double spread;        /* width / initial width */
     double crater;        /* depth of the deepest point of the upper face below where it was [length] */
     double rim;           /* height of its highest point above it [length] */
 } mpm_splat;
@@ -429,7 +429,7 @@ MPM_API mpm_status mpm_bond_check(const mpm_bond *b, mpm_fault *f)
     return mpm_want(b->length >= 0, f, "bond length", b->length, -1);
 }
 
-MPM_API mpm_real mpm_bond_increment(mpm_bond *b, mpm_real amount, mpm_real dt)
+MPM_API mpm_real mpm_bond_law(mpm_bond *b, mpm_real amount, mpm_real dt)
 {
     mpm_real factor;
     if (!(amount > 0)) return 0;
@@ -451,7 +451,7 @@ static inline mpm_real mpm__von_mises(const mpm_points *q, int32_t i)
     return mpm_sqrt(d / 2 + 3 * (yz * yz + xz * xz + xy * xy));
 }
 
-MPM_API mpm_real mpm_bond_growth(mpm_bond *b, const mpm_world *w, int32_t i, mpm_real dt)
+MPM_API mpm_real mpm_bond_of_point(mpm_bond *b, const mpm_world *w, int32_t i, mpm_real dt)
 {
     mpm_real amount;
     if (b->rule == MPM_BOND_NONE) return 0;
@@ -464,7 +464,7 @@ MPM_API mpm_real mpm_bond_growth(mpm_bond *b, const mpm_world *w, int32_t i, mpm
     amount = w->points.plastic_rate[i] * dt;
     if (b->rule == MPM_BOND_ENERGY)
         amount *= mpm__von_mises(&w->points, i) * (b->length > 0 ? b->length : w->desc.cell);
-    return mpm_bond_increment(b, amount, dt);
+    return mpm_bond_law(b, amount, dt);
 }
 
 /* The body other than `body` with most mass at a contact node. */
@@ -494,18 +494,18 @@ static inline void mpm__bond_run(mpm_bond *grow, const mpm_bond *nodes, mpm_worl
         for (p = 0; p < n; p++) {
             const int32_t i = at + p;
             int nearest = -1;
-            if (!(q->flags[i] & MPM_SURFACE)) continue;
+            if (!(q->flags[i] & MPM_POINT_SURFACE)) continue;
             mpm__products(&s, p, k, ky, N);
             for (a = 0; a < k * ky * k; a++) {
                 mpm_node *node = &w->node[slot[a]];
-                if (!(node->sides & MPM_NODE_CONTACT) || !(N[a] > 0)) continue;
+                if (!(node->flags & MPM_NODE_CONTACT) || !(N[a] > 0)) continue;
                 if (nearest < 0 || N[a] > N[nearest]) nearest = a;
                 if (!nodes) continue;
                 node->bond[0] += nodes->average == MPM_BOND_MEAN ? q->bond[i] : q->bond[i] * N[a];
                 node->bond[1] += nodes->average == MPM_BOND_WEIGHTED ? N[a] : 1;
             }
             if (grow && nearest >= 0) {
-                const mpm_real growth = mpm_bond_growth(grow, w, i, dt);
+                const mpm_real growth = mpm_bond_of_point(grow, w, i, dt);
                 q->bond[i] += growth;
                 if (partner && growth > 0)
                     partner[i] = (mpm_real)(1 + mpm__partner(w, &w->node[slot[nearest]], r->body));
@@ -545,7 +545,7 @@ static inline void mpm__measure_add(const mpm_world *w, int32_t body, const mpm_
     int32_t i;
     for (i = b->first; i < b->first + b->count; i++) {
         const double mass = (double)q->mass[i];
-        if (!(q->flags[i] & MPM_SURFACE) || !(q->bond[i] > 0)) continue;
+        if (!(q->flags[i] & MPM_POINT_SURFACE) || !(q->bond[i] > 0)) continue;
         if (partner && (int32_t)partner[i] != other + 1) continue;
         m->contacted++;
         m->contacted_mass += mass;
@@ -651,13 +651,13 @@ static inline mpm_rebound mpm__rebound(const mpm_world *w, int32_t body, const d
     return r;
 }
 
-MPM_API mpm_rebound mpm_restitution(const mpm_world *w, int32_t body, mpm_real filter)
+MPM_API mpm_rebound mpm_rebound_of(const mpm_world *w, int32_t body, mpm_real filter)
 {
     const double rest[3] = {0, 0, 0};
     return mpm__rebound(w, body, rest, filter);
 }
 
-MPM_API mpm_rebound mpm_restitution_from(const mpm_world *w, int32_t body, int32_t other, mpm_real filter)
+MPM_API mpm_rebound mpm_rebound_from(const mpm_world *w, int32_t body, int32_t other, mpm_real filter)
 {
     const mpm_totals t = mpm_body_totals(w, other);
     double frame[3];
@@ -696,12 +696,12 @@ MPM_API mpm_splat mpm_splat_measure(const mpm_world *w, int32_t particle, int32_
         r.top = high + (double)b->desc.spacing / 2;
         r.height = high - low + (double)b->desc.spacing;
         r.width = 2 * sqrt(radius) + (double)b->desc.spacing;
-        r.compression = 1 - r.height / (double)(2 * ball->half[2]);
-        r.flattening = r.width / (double)(2 * ball->half[0]);
+        r.flattening = 1 - r.height / (double)(2 * ball->half[2]);
+        r.spread = r.width / (double)(2 * ball->half[0]);
     }
     for (i = s->first; i < s->first + s->active; i++) {
         const double rise = (double)q->x[2][i] - face;
-        if (!(q->flags[i] & MPM_TOP) || !mpm__slow(q, i, filter)) continue;
+        if (!(q->flags[i] & MPM_FACE_TOP) || !mpm__slow(q, i, filter)) continue;
         if (-rise > r.crater) r.crater = -rise;
         if (rise > r.rim) r.rim = rise;
     }
@@ -897,13 +897,13 @@ static inline double mpm__logistic_cost(mpm_logistic *f, const double *x1, const
         for (j = 0; j <= i; j++) H[i][j] = i && i == j ? ridge : 0;
     }
     for (t = 0; t < n; t++) {
-        double z, toward, small, h;
+        double z, toward, tiny, h;
         mpm__terms(mpm__scaled(f, 0, x1[t]), mpm__scaled(f, 1, x2[t]), X);
         z = mpm__poly(f->theta, X[1], X[2]);
         toward = outcome[t] ? z : -z;
-        small = exp(-fabs(z)); /* of h = 1/(1 + e^-z), whichever way it does not overflow */
-        h = (z > 0 ? 1 : small) / (1 + small);
-        f->cost += ((toward > 0 ? 0 : -toward) + log(1 + small)) / (double)n;
+        tiny = exp(-fabs(z)); /* of h = 1/(1 + e^-z), whichever way it does not overflow */
+        h = (z > 0 ? 1 : tiny) / (1 + tiny);
+        f->cost += ((toward > 0 ? 0 : -toward) + log(1 + tiny)) / (double)n;
         f->wrong += !(toward > 0);
         for (i = 0; g && i < MPM__TERMS; i++) {
             g[i] += X[i] * (h - outcome[t]) / (double)n;
@@ -1055,7 +1055,7 @@ static inline void mpm__polish(const double *a, const double *b, double reach, d
 static inline int mpm__crossings(const double *a, const double *b, double u, double v, double r,
                                  double (*point)[2], int n)
 {
-    const double near = 0.004; /* boundaries at a small angle meet in a strip, not in a part */
+    const double closest = 0.004; /* boundaries at a small angle meet in a strip, not in a part */
     int i;
     if (n == 4 || !mpm__may_vanish(a, u, v, r) || !mpm__may_vanish(b, u, v, r)) return n;
     if (r > 1e-6) {
@@ -1063,9 +1063,9 @@ static inline int mpm__crossings(const double *a, const double *b, double u, dou
             n = mpm__crossings(a, b, u + (i & 2 ? r : -r) / 2, v + (i & 1 ? r : -r) / 2, r / 2, point, n);
         return n;
     }
-    mpm__polish(a, b, near, &u, &v);
+    mpm__polish(a, b, closest, &u, &v);
     for (i = 0; i < n; i++)
-        if (fabs(point[i][0] - u) <= near && fabs(point[i][1] - v) <= near) return n;
+        if (fabs(point[i][0] - u) <= closest && fabs(point[i][1] - v) <= closest) return n;
     point[n][0] = u;
     point[n][1] = v;
     return n + 1;

@@ -27,7 +27,7 @@ int main(void)
         mpm_world *w = &s.world;
         t[LOCATE] = clock();
         while (mpm_locate(w) == MPM_ERR_FULL)
-            if (mpm_grow(w, NULL, 0) < 0) return 1;
+            if (mpm_reserve(w, NULL, 0) < 0) return 1;
         t[P2G] = clock();
         mpm_p2g(w);
         t[FORCES] = clock();
@@ -67,7 +67,7 @@ int main(void)
            1e9 * whole / ((double)n * s.world.points.count), 1e-6 * (double)n * s.world.points.count / whole);
     printf("  %-18s %7.2f ns per point; the step takes %.1f of them\n", "one memory sweep", 1e9 * sweep,
            whole / ((double)n * s.world.points.count) / sweep);
-    printf("  %.0f bytes per point\n", (double)mpm_memory(&s.world) / s.world.points.count);
+    printf("  %.0f bytes per point\n", (double)mpm_bytes_used(&s.world) / s.world.points.count);
     mpm_free(&s.world);
     return 0;
 }

@@ -86,7 +86,7 @@ static int write_summary(const impact *s, const impact_case *c, const output *o,
     mpm_io_json_number(&j, "time_ns", (double)w->time * 1e3);
     mpm_io_json_number(&j, "cpu_seconds", cpu);
     mpm_io_json_number(&j, "point_steps_per_second", cpu > 0 ? (double)w->steps * (double)r.all.points / cpu : 0);
-    mpm_io_json_number(&j, "bytes_per_point", (double)mpm_memory(w) / (double)r.all.points);
+    mpm_io_json_number(&j, "bytes_per_point", (double)mpm_bytes_used(w) / (double)r.all.points);
     mpm_io_json_number(&j, "mass_error", r.mass_error);
     mpm_io_json_number(&j, "momentum_error", r.momentum_error);
     mpm_io_json_number(&j, "energy_error", r.energy_error);
@@ -145,7 +145,7 @@ static void print_table(const impact *s, const impact_case *c, double cpu)
     printf("  bond floor acted                %10ld times of %ld\n", s->bond.floor_hits, s->bond.increments);
     printf("  %ld steps of %.4g ps, %.1f s CPU, %.2f million point-steps/s, %.0f bytes per point\n", w->steps,
            (double)s->dt * 1e6, cpu, cpu > 0 ? 1e-6 * (double)w->steps * (double)r.all.points / cpu : 0,
-           (double)mpm_memory(w) / (double)r.all.points);
+           (double)mpm_bytes_used(w) / (double)r.all.points);
 }
 
 /* Time integration: one call per phase. */
@@ -160,7 +160,7 @@ static int run(impact *s, const impact_case *c, output *o)
 
         mpm_status status = mpm_locate(w);           /* points in cell order, nodes for every body */
         if (status == MPM_ERR_FULL) {                /* ejected points touch ever more nodes */
-            if (mpm_grow(w, NULL, 0) < 0) return report(&w->fault, "growing the grid");
+            if (mpm_reserve(w, NULL, 0) < 0) return report(&w->fault, "growing the grid");
             continue;
         }
         if (status < 0) return report(&w->fault, "locate");

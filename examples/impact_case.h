@@ -173,7 +173,7 @@ static inline mpm_desc impact_grid(const impact_case *c)
     mpm_desc d = mpm_desc_default();
     int a;
     d.geometry = rings ? MPM_AXISYMMETRIC : MPM_3D;
-    d.shape = strcmp(c->functions, "gimp") ? MPM_LINEAR : MPM_GIMP;
+    d.basis = strcmp(c->functions, "gimp") ? MPM_LINEAR : MPM_GIMP;
     d.cell = (mpm_real)c->cell;
     for (a = 0; a < 2; a++) {
         const int whole = !rings && mirrors < 2 - a;
@@ -247,7 +247,7 @@ static inline mpm_body_desc impact_body(mpm_material *m, const impact_case *c, i
     } else {
         b.shape = mpm_cylinder(0, 0, (mpm_real)-c->substrate_height, (mpm_real)(c->substrate_diameter / 2),
                                (mpm_real)c->substrate_height);
-        b.absorb = MPM_BOTTOM | MPM_SIDES;
+        b.absorb = MPM_FACE_BOTTOM | MPM_FACE_RIM;
     }
     return b;
 }
@@ -305,7 +305,7 @@ static inline mpm_status impact_step(impact *s)
     mpm_world *w = &s->world;
     mpm_status status;
     while ((status = mpm_locate(w)) == MPM_ERR_FULL)
-        if (mpm_grow(w, NULL, 0) < 0) return w->fault.status;
+        if (mpm_reserve(w, NULL, 0) < 0) return w->fault.status;
     if (status < 0) return status;
     mpm_p2g(w);
     mpm_forces(w, s->dt);
@@ -330,9 +330,8 @@ typedef struct impact_result {
     double substrate_drift;                            /* mean v_z of the substrate */
     double relative, filtered_relative;                /* rebound less that drift */
     double tangential;                                 /* mean v_x of the particle */
-    double flattening;                                 /* 1 - height / height at the start: what mpm_splat calls
-                                                          compression (its flattening is of the width); of the points
-                                                          within 60 m/s of the mean: ejected ones fly far */
+    double flattening;                                 /* see mpm_splat; of the points within 60 m/s of the mean:
+                                                          ejected ones fly far */
     double crater;                                     /* see mpm_splat */
     double contact_area, bonded_area;                  /* of the whole particle: see mpm_bond_measure */
     double ejected_fraction;                           /* of the particle's mass, faster than 60 m/s */
@@ -358,7 +357,7 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
     memset(&r, 0, sizeof r);
     r.bond = mpm_bond_measure_body(w, -1);
     r.particle_bond = mpm_bond_measure_body(w, IMPACT_PARTICLE);
-    r.rebound = mpm_restitution(w, IMPACT_PARTICLE, 60);
+    r.rebound = mpm_rebound_of(w, IMPACT_PARTICLE, 60);
     r.particle = mpm_body_totals(w, IMPACT_PARTICLE);
     r.substrate = mpm_body_totals(w, IMPACT_SUBSTRATE);
     r.all = mpm_body_totals(w, -1);
@@ -368,7 +367,7 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
     r.filtered_relative = r.rebound.filtered - r.substrate_drift;
     r.tangential = w->desc.side[0] == MPM_SIDE_SYMMETRY ? 0 : r.particle.momentum[0] / r.particle.mass;
     r.flattening = mpm_splat_measure(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE,
-                                     (mpm_real)(60 + fabs(r.rebound.mean))).compression;
+                                     (mpm_real)(60 + fabs(r.rebound.mean))).flattening;
     r.crater = mpm_splat_measure(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE, MPM_R(1e15)).crater; /* deep points move */
     r.contact_area = r.particle_bond.contacted_area * impact_copies(s);
     r.bonded_area = r.particle_bond.bonded_area * impact_copies(s);

@@ -70,7 +70,7 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
     do {
         mpm_status status = mpm_locate(w);
         if (status == MPM_ERR_FULL) {
-            if (mpm_grow(w, NULL, 0) < 0) return report(&w->fault, "growing the grid");
+            if (mpm_reserve(w, NULL, 0) < 0) return report(&w->fault, "growing the grid");
             continue;
         }
         if (status < 0) return report(&w->fault, "locate");

@@ -116,7 +116,7 @@ static int run(taylor *s, const taylor_case *c, output *o)
 
         mpm_status status = mpm_locate(w);   /* points in cell order, nodes for the body */
         if (status == MPM_ERR_FULL) {        /* a spreading foot touches ever more nodes */
-            if (mpm_grow(w, NULL, 0) < 0) return report(&w->fault, "growing the grid");
+            if (mpm_reserve(w, NULL, 0) < 0) return report(&w->fault, "growing the grid");
             continue;
         }
         if (status < 0) return report(&w->fault, "locate");

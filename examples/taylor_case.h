@@ -105,7 +105,7 @@ static inline mpm_desc taylor_grid(const taylor *s, const taylor_case *c)
 {
     mpm_desc d = mpm_desc_default();
     d.geometry = strcmp(c->geometry, "3d") ? MPM_AXISYMMETRIC : MPM_3D;
-    d.shape = strcmp(c->functions, "gimp") ? MPM_LINEAR : MPM_GIMP;
+    d.basis = strcmp(c->functions, "gimp") ? MPM_LINEAR : MPM_GIMP;
     d.cell = (mpm_real)s->cell;
     d.cells[0] = d.cells[1] = (int32_t)ceil(4 * s->radius / s->cell) + 4;
     d.cells[2] = (int32_t)ceil((s->length + 4 * s->radius) / s->cell) + 4;
@@ -165,7 +165,7 @@ static inline mpm_status taylor_step(taylor *s)
 {
     mpm_status status;
     while ((status = mpm_step(&s->world, s->dt)) == MPM_ERR_FULL)
-        if (mpm_grow(&s->world, NULL, 0) != MPM_OK) return MPM_ERR_MEMORY;
+        if (mpm_reserve(&s->world, NULL, 0) != MPM_OK) return MPM_ERR_MEMORY;
     return status;
 }
 

@@ -18,7 +18,7 @@ static double worst_stress(const mpm_world *w)
 }
 
 /* A sphere that nothing acts on crosses the grid as it was. */
-static void free_flight(mpm_shape_function shape, const char *name)
+static void free_flight(mpm_basis basis, const char *name)
 {
     mpm_material m = scene_metal(1, mpm_units_um_us_ng());
     mpm_desc d = scene_grid(1, 12, 12, 20, 0, 0, 0);
@@ -28,7 +28,7 @@ static void free_flight(mpm_shape_function shape, const char *name)
     char line[120];
     int i;
     b.velocity[0] = 300;
-    d.shape = shape;
+    d.basis = basis;
     CHECK_EQUAL(name, mpm_init(&w, &d, NULL, 0), MPM_OK);
     CHECK_EQUAL("free flight: body", mpm_body_add(&w, &b), MPM_OK);
     t0 = mpm_body_totals(&w, -1);
@@ -102,7 +102,7 @@ static void spin(void)
 
 /* A pressure pulse going down a column between sliding walls (uniaxial strain). Returns the energy
    left at the end over that at the start; *speed gets the speed of the pulse, from its centroid. */
-static double pulse(mpm_shape_function shape, double a, double duration, double *speed)
+static double pulse(mpm_basis basis, double a, double duration, double *speed)
 {
     const double length = 120, width = 30, v0 = 1, dt = 0.2 / 6198;
     mpm_material m = scene_metal(1, mpm_units_um_us_ng());
@@ -114,10 +114,10 @@ static double pulse(mpm_shape_function shape, double a, double duration, double 
     mpm_world w;
     int32_t i;
     int s;
-    d.shape = shape;
+    d.basis = basis;
     for (s = 0; s < 4; s++) d.side[s] = MPM_SIDE_SYMMETRY;
-    b.absorb = MPM_BOTTOM;
-    b.absorb_a = (mpm_real)a;
+    b.absorb = MPM_FACE_BOTTOM;
+    b.absorb_normal = (mpm_real)a;
     mpm_init(&w, &d, NULL, 0);
     mpm_body_add(&w, &b);
     for (i = 0; i < w.points.count; i++) {
@@ -184,7 +184,7 @@ static double collide(double preset, double *momentum, double *energy, double *d
     mpm_body_add(&w, &top);
     mpm_body_add(&w, &low);
     for (i = 0; i < w.points.count; i++)
-        if (w.points.flags[i] & MPM_SURFACE) w.points.bond[i] = (mpm_real)preset;
+        if (w.points.flags[i] & MPM_POINT_SURFACE) w.points.bond[i] = (mpm_real)preset;
     t0 = mpm_body_totals(&w, -1);
     before = mpm_body_totals(&w, 0).momentum[2] - mpm_body_totals(&w, 1).momentum[2];
     for (n = 0; n < 6000; n++)

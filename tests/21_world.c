@@ -60,8 +60,8 @@ static void bad_choices(void)
     d.geometry = (mpm_geometry)(MPM_AXISYMMETRIC + 1);
     refuses_desc("geometry", d, MPM_ERR_ARGUMENT);
     d = good;
-    d.shape = (mpm_shape_function)(MPM_GIMP + 1);
-    refuses_desc("shape", d, MPM_ERR_ARGUMENT);
+    d.basis = (mpm_basis)(MPM_GIMP + 1);
+    refuses_desc("basis", d, MPM_ERR_ARGUMENT);
     d = good;
     d.contact = (mpm_contact_law)(MPM_CONTACT_NONE + 1);
     refuses_desc("contact", d, MPM_ERR_ARGUMENT);
@@ -140,8 +140,8 @@ static void memory(void)
     CHECK_EQUAL("memory: own grows for the body", mpm_body_add(&own, &b), MPM_OK);
     CHECK_EQUAL("memory: given cannot", mpm_body_add(&given, &b), MPM_ERR_FULL);
     while (given.bodies == 0 && full < 8) {
-        void *next = malloc(mpm_grow_bytes(&given));
-        CHECK_EQUAL("memory: grow by hand", mpm_grow(&given, next, mpm_grow_bytes(&given)), MPM_OK);
+        void *next = malloc(mpm_reserve_bytes(&given));
+        CHECK_EQUAL("memory: grow by hand", mpm_reserve(&given, next, mpm_reserve_bytes(&given)), MPM_OK);
         free(more);
         more = next;
         full++;
@@ -208,7 +208,7 @@ static void impact_in(mpm_units u, double out[5], mpm_real *bits)
     int32_t i;
     int n;
     d.side[0] = d.side[2] = MPM_SIDE_SYMMETRY;
-    slab.absorb = MPM_BOTTOM | MPM_SIDES;
+    slab.absorb = MPM_FACE_BOTTOM | MPM_FACE_RIM;
     mpm_init(&w, &d, NULL, 0);
     mpm_body_add(&w, &ball);
     mpm_body_add(&w, &slab);
@@ -255,14 +255,14 @@ static void labels(void)
     mpm_world w;
     int32_t i;
     d.side[0] = d.side[2] = MPM_SIDE_SYMMETRY;
-    slab.absorb = MPM_BOTTOM | MPM_SIDES;
+    slab.absorb = MPM_FACE_BOTTOM | MPM_FACE_RIM;
     mpm_init(&w, &d, NULL, 0);
     mpm_body_add(&w, &slab);
     for (i = 0; i < w.points.count; i++) {
-        top += (w.points.flags[i] & MPM_TOP) != 0;
-        bottom += (w.points.flags[i] & MPM_BOTTOM) != 0;
-        sides += (w.points.flags[i] & MPM_SIDES) != 0;
-        surface += (w.points.flags[i] & MPM_SURFACE) != 0;
+        top += (w.points.flags[i] & MPM_FACE_TOP) != 0;
+        bottom += (w.points.flags[i] & MPM_FACE_BOTTOM) != 0;
+        sides += (w.points.flags[i] & MPM_FACE_RIM) != 0;
+        surface += (w.points.flags[i] & MPM_POINT_SURFACE) != 0;
     }
     CHECK_EQUAL("labels: one layer at the top", top, w.points.count / 12);
     CHECK_EQUAL("labels: one layer at the bottom", bottom, w.points.count / 12);

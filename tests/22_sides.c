@@ -121,7 +121,7 @@ static void friction(double mu)
 }
 
 /* A quarter behind two symmetry planes is a quarter of the whole, mirrored ghosts included. */
-static void mirrors(mpm_shape_function shape, const char *name)
+static void mirrors(mpm_basis basis, const char *name)
 {
     double kinetic[2], internal[2], high[2], lost = 0;
     char line[100];
@@ -133,9 +133,9 @@ static void mirrors(mpm_shape_function shape, const char *name)
         mpm_body_desc slab = scene_body(&m, mpm_cylinder(0, 0, -3, 5, 3), 0.5, 0);
         mpm_totals t;
         mpm_world w;
-        d.shape = shape;
+        d.basis = basis;
         if (!full) d.side[0] = d.side[2] = MPM_SIDE_SYMMETRY;
-        slab.absorb = MPM_BOTTOM | MPM_SIDES;
+        slab.absorb = MPM_FACE_BOTTOM | MPM_FACE_RIM;
         mpm_init(&w, &d, NULL, 0);
         mpm_body_add(&w, &ball);
         mpm_body_add(&w, &slab);
@@ -163,7 +163,7 @@ static void mirrors(mpm_shape_function shape, const char *name)
 
 /* Axisymmetry: a velocity a r strains hoop and radius alike, and uniform pressure leaves the nodes
    inside a body without force (hoop term included). */
-static void rings(mpm_shape_function shape, const char *name)
+static void rings(mpm_basis basis, const char *name)
 {
     mpm_material m = scene_metal(1, mpm_units_um_us_ng());
     mpm_desc d = scene_grid(1, 10, 1, 12, 0, 0, 0);
@@ -174,7 +174,7 @@ static void rings(mpm_shape_function shape, const char *name)
     int32_t i;
     char line[100];
     d.geometry = MPM_AXISYMMETRIC;
-    d.shape = shape;
+    d.basis = basis;
     d.side[0] = MPM_SIDE_SYMMETRY;
     mpm_init(&w, &d, NULL, 0);
     mpm_body_add(&w, &b);
@@ -195,7 +195,7 @@ static void rings(mpm_shape_function shape, const char *name)
         if (fabs((double)w.node[i].force[2]) / scale > worst_force)
             worst_force = fabs((double)w.node[i].force[2]) / scale;
     }
-    if (shape == MPM_LINEAR) CHECK_NEAR("rings: no force inside under uniform pressure", worst_force, 0, 100 * eps);
+    if (basis == MPM_LINEAR) CHECK_NEAR("rings: no force inside under uniform pressure", worst_force, 0, 100 * eps);
     w.body[0].desc.stress = NULL;
     mpm_stress(&w, 1);
     for (i = 0; i < w.points.count; i++) {

@@ -8,7 +8,7 @@ static const double eps = (double)MPM_EPSILON;
 
 /* A bar of 25, held at its lower end, in its first mode: swings with pi c / 2 L, and its error falls with
    the square of the cell. Returns frequency over the exact one, minus 1. */
-static double bar(mpm_shape_function shape, int cells)
+static double bar(mpm_basis basis, int cells)
 {
     const double length = 25, cell = length / cells, pi = 3.14159265358979323846, dt = 0.02 * cell;
     mpm_material m = mpm_material_default();
@@ -23,7 +23,7 @@ static double bar(mpm_shape_function shape, int cells)
     m.shear_modulus = 50;
     b = scene_body(&m, mpm_box(0, 0, 0, (mpm_real)length, 1, (mpm_real)cell), cell / 2, 0);
     d.geometry = MPM_PLANE_STRAIN;
-    d.shape = shape;
+    d.basis = basis;
     d.side[0] = MPM_SIDE_FIXED;
     d.side[4] = d.side[5] = MPM_SIDE_SYMMETRY;
     mpm_init(&w, &d, NULL, 0);
@@ -41,9 +41,9 @@ static double bar(mpm_shape_function shape, int cells)
     return zeros > 1 ? (zeros - 1) / (last - first) * length * 2 / 10 - 1 : 1;
 }
 
-static void bars(mpm_shape_function shape, const char *name)
+static void bars(mpm_basis basis, const char *name)
 {
-    const double coarse = bar(shape, 10), fine = bar(shape, 20);
+    const double coarse = bar(basis, 10), fine = bar(basis, 20);
     char line[100];
     snprintf(line, sizeof line, "bar, %s: frequency with 20 cells", name);
     CHECK_NEAR(line, fine, 0, 0.0015);

@@ -31,7 +31,7 @@ static void user_fields(void)
     d.origin[2] = -20;
     d.bodies = 1;
     d.user_fields = 2;
-    d.shape = MPM_GIMP;
+    d.basis = MPM_GIMP;
     b.shape = mpm_box(1, 1, -5, 5, 5, 5);
     b.spacing = MPM_R(0.5);
     b.density = 1;
@@ -73,7 +73,7 @@ static void motions(void)
     m.time = 0.5;
     m.amplitude = 0.1;
     CHECK_NEAR("vortex, GIMP: error at 1/16", manufactured_error(&m), 0, 0.035);
-    m.shape = MPM_LINEAR;
+    m.basis = MPM_LINEAR;
     CHECK_NEAR("vortex, linear: error at 1/16", manufactured_error(&m), 0, 0.05);
 }
 

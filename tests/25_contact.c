@@ -19,7 +19,7 @@ static void meet(mpm_world *w, const mpm_desc *d, const mpm_body_desc *a, const 
 
 /* Mean angle in degrees between the normals found at the nodes of two spheres and the line of their
    centres, over twelve directions and grid positions. */
-static double angle(mpm_shape_function shape, mpm_normal_rule rule)
+static double angle(mpm_basis basis, mpm_normal_rule rule)
 {
     const double R = 4;
     double sum = 0;
@@ -35,7 +35,7 @@ static double angle(mpm_shape_function shape, mpm_normal_rule rule)
         mpm_body_desc b = scene_body(&m, mpm_sphere(cx, cy, cz, 4), 0.5, 0);
         mpm_world w;
         int32_t i;
-        d.shape = shape;
+        d.basis = basis;
         d.normal = rule;
         meet(&w, &d, &a, &b);
         for (i = 0; i < w.pairs; i++, n++) {
@@ -58,7 +58,7 @@ static void logistic(void)
 }
 
 /* Flat faces: the plane is exact, also in the quarter and where a body is only a corner. */
-static void flat_faces(mpm_geometry geometry, mpm_shape_function shape, const char *name)
+static void flat_faces(mpm_geometry geometry, mpm_basis basis, const char *name)
 {
     mpm_material m = scene_metal(1, mpm_units_um_us_ng());
     mpm_desc d = scene_grid(1, 10, 10, 20, 0, 0, -10);
@@ -70,7 +70,7 @@ static void flat_faces(mpm_geometry geometry, mpm_shape_function shape, const ch
     int covered = 0;
     char line[100];
     d.geometry = geometry;
-    d.shape = shape;
+    d.basis = basis;
     d.normal = MPM_NORMAL_LOGISTIC;
     d.separation = 1;
     d.side[0] = d.side[2] = MPM_SIDE_SYMMETRY;

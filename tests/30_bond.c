@@ -16,15 +16,15 @@ static void growth(void)
     double x;
     CHECK_RELATIVE("G_c in J/m2 is G_c in um us ng", b.critical, gc, 8 * eps);
     CHECK_RELATIVE("Gdot_c in J/m2/us is Gdot_c in um us ng", b.critical_rate, gdot, 8 * eps);
-    CHECK_NEAR("nothing dissipated adds nothing", mpm_bond_increment(&b, 0, (mpm_real)dt), 0, 0);
+    CHECK_NEAR("nothing dissipated adds nothing", mpm_bond_law(&b, 0, (mpm_real)dt), 0, 0);
     CHECK_EQUAL("... and is no increment", b.increments, 0);
     for (x = 1e-4; x < 2; x *= 3) { /* below e: the law itself */
         const double dG = x * gdot * dt;
-        CHECK_RELATIVE("D against A 4.16, 4.17", mpm_bond_increment(&b, (mpm_real)dG, (mpm_real)dt),
+        CHECK_RELATIVE("D against A 4.16, 4.17", mpm_bond_law(&b, (mpm_real)dG, (mpm_real)dt),
                        dG / (gc * (1 - log(x))), 64 * eps);
     }
     CHECK_EQUAL("the floor has not acted", b.floor_hits, 0);
-    CHECK_RELATIVE("beyond e Gdot_c the floor acts", mpm_bond_increment(&b, (mpm_real)(3 * gdot * dt), (mpm_real)dt),
+    CHECK_RELATIVE("beyond e Gdot_c the floor acts", mpm_bond_law(&b, (mpm_real)(3 * gdot * dt), (mpm_real)dt),
                    3 * gdot * dt / (gc * 0.05), 64 * eps);
     CHECK_EQUAL("... and is counted", b.floor_hits, 1);
     b.critical = -1;
@@ -119,7 +119,7 @@ static void averages(void)
     mpm_body_add(&w, &ball);
     mpm_body_add(&w, &slab);
     for (i = 0; i < w.points.count; i++)
-        if (w.points.flags[i] & MPM_SURFACE) w.points.bond[i] = i < w.body[1].first ? MPM_R(0.6) : MPM_R(0.2);
+        if (w.points.flags[i] & MPM_POINT_SURFACE) w.points.bond[i] = i < w.body[1].first ? MPM_R(0.6) : MPM_R(0.2);
     for (a = MPM_BOND_MEAN; a <= MPM_BOND_LITERAL; a = (mpm_bond_average)(a + 1)) {
         double low = 9, high = -9;
         b.average = a;
@@ -216,10 +216,10 @@ static void rules(void)
 
     for (i = 0; i < p->count; i++) p->bond[i] = 0;
     b = mpm_bond_default(&u); /* dG = 200 * 0.0034 * 1 um = 0.68 J/m2; x = 0.68/(2.271e5 * 8e-6) = 0.3742845 */
-    CHECK_RELATIVE("energy rule, A 4.16, 4.17", mpm_bond_growth(&b, &w, 0, dt),
+    CHECK_RELATIVE("energy rule, A 4.16, 4.17", mpm_bond_of_point(&b, &w, 0, dt),
                    0.68 / (1503.74 * (1 + 0.98273908)), 1e-6);
     b.length = 2;
-    CHECK_RELATIVE("... its length in place of the cell", mpm_bond_growth(&b, &w, 0, dt),
+    CHECK_RELATIVE("... its length in place of the cell", mpm_bond_of_point(&b, &w, 0, dt),
                    1.36 / (1503.74 * (1 + 0.28959190)), 1e-6);
 
     b.rule = MPM_BOND_USER;
@@ -350,7 +350,7 @@ static void rings(void)
         mpm_desc d = scene_grid(1, 8, 8, 12, 0, 0, -6);
         mpm_world w;
         d.geometry = MPM_AXISYMMETRIC;
-        d.shape = gimp ? MPM_GIMP : MPM_LINEAR;
+        d.basis = gimp ? MPM_GIMP : MPM_LINEAR;
         d.side[0] = MPM_SIDE_SYMMETRY;
         mpm_init(&w, &d, NULL, 0);
         mpm_body_add(&w, &disc);
@@ -442,7 +442,7 @@ static void splats(void)
     s = mpm_splat_measure(&w, 0, 1, 60);
     CHECK_RELATIVE("a cube as it was: height", s.height, 4, 8 * eps);
     CHECK_RELATIVE("... top", s.top, 4, 8 * eps);
-    CHECK_NEAR("... compression", s.compression, 0, 8 * eps);
+    CHECK_NEAR("... flattening", s.flattening, 0, 8 * eps);
     CHECK_NEAR("... crater", s.crater, 0, 16 * eps);
     for (i = 0; i < w.body[0].count; i++) { /* three quarters of the height, twice the width */
         w.points.x[2][i] *= MPM_R(0.75);
@@ -452,21 +452,21 @@ static void splats(void)
     w.points.x[2][0] = 5; /* ejected */
     w.points.v[0][0] = 61;
     for (i = w.body[1].first; i < w.points.count; i++) {
-        if (!(w.points.flags[i] & MPM_TOP)) continue;
+        if (!(w.points.flags[i] & MPM_FACE_TOP)) continue;
         if (w.points.x[0][i] < -4) w.points.x[2][i] += MPM_R(0.25);
         else w.points.x[2][i] -= MPM_R(1.5);
     }
     s = mpm_splat_measure(&w, 0, 1, 60);
     CHECK_RELATIVE("height: 0.75 * 3.5 + 0.5", s.height, 3.125, 16 * eps);
     CHECK_RELATIVE("top: 0.75 * 3.75 + 0.25, the ejected point left out", s.top, 3.0625, 16 * eps);
-    CHECK_RELATIVE("compression", s.compression, 1 - 3.125 / 4, 64 * eps);
+    CHECK_RELATIVE("flattening", s.flattening, 1 - 3.125 / 4, 64 * eps);
     CHECK_RELATIVE("width: 2 * 3.5 + 0.5, twice the lattice's", s.width, 7.5, 16 * eps);
-    CHECK_RELATIVE("flattening", s.flattening, 7.5 / 4, 16 * eps);
+    CHECK_RELATIVE("spread", s.spread, 7.5 / 4, 16 * eps);
     CHECK_RELATIVE("crater", s.crater, 1.5, 64 * eps);
     CHECK_RELATIVE("rim", s.rim, 0.25, 256 * eps);
-    r = mpm_restitution(&w, 0, 60);
+    r = mpm_rebound_of(&w, 0, 60);
     CHECK_RELATIVE("rebound as seen from the ground", r.filtered, 12, 100 * eps);
-    r = mpm_restitution_from(&w, 0, 1, 60);
+    r = mpm_rebound_from(&w, 0, 1, 60);
     CHECK_RELATIVE("... from the moving slab", r.filtered, 10, 100 * eps);
     CHECK_EQUAL("... one point ejected", r.ejected, 1);
     CHECK_RELATIVE("... of its mass", r.ejected_mass, w.points.mass[0], 4 * eps);
@@ -513,12 +513,12 @@ static void measures(void)
     mpm_init(&w, &d, NULL, 0);
     mpm_body_add(&w, &ball);
     for (i = 0; i < w.points.count && n < 10; i++)
-        if (w.points.flags[i] & MPM_SURFACE) w.points.bond[i] = n++ < 3 ? MPM_R(1.25) : MPM_R(0.25);
+        if (w.points.flags[i] & MPM_POINT_SURFACE) w.points.bond[i] = n++ < 3 ? MPM_R(1.25) : MPM_R(0.25);
     measure = mpm_bond_measure_body(&w, 0);
     CHECK_NEAR("PBCP (A 5.1)", measure.pbcp, 30, 1e-12);
     CHECK_NEAR("ABP", measure.abp, (3 * 1.25 + 7 * 0.25) / 10, 1e-12);
     w.points.v[0][0] = 100;
-    r = mpm_restitution(&w, 0, 60);
+    r = mpm_rebound_of(&w, 0, 60);
     CHECK_EQUAL("ejected points are counted", r.ejected, 1);
     CHECK_RELATIVE("rebound velocity, filtered", r.filtered, 20, 100 * eps);
     CHECK_RELATIVE("rebound velocity, mean", r.mean, 20, 100 * eps);
@@ -535,20 +535,20 @@ static void noise(void)
     mpm_world w;
     int32_t i;
     splat_scene(&w, &m);
-    r = mpm_restitution(&w, 0, 60);
+    r = mpm_rebound_of(&w, 0, 60);
     CHECK_NEAR("all points move alike: no noise", r.noise, 0, 12 * sqrt(1024 * DBL_EPSILON));
     for (i = 0; i < w.body[0].count; i++) {
         w.points.v[2][i] = i % 2 ? 15 : 10;
         if (i % 2 == 0) w.points.mass[i] *= 4;
     }
-    r = mpm_restitution(&w, 0, 60);
+    r = mpm_rebound_of(&w, 0, 60);
     CHECK_RELATIVE("two velocities: mean by mass", r.filtered, 11, 1e-12);
     CHECK_RELATIVE("... standard deviation by mass", r.noise, 2, 1e-11);
     w.points.v[2][0] = w.points.v[2][1] = 71; /* one of each is ejected: the rest in the same proportion */
-    r = mpm_restitution(&w, 0, 60);
+    r = mpm_rebound_of(&w, 0, 60);
     CHECK_RELATIVE("... without what was ejected", r.noise, 2, 1e-11);
     CHECK_RELATIVE("... which counts in the mean: 60 more in 1 of 256", r.mean, 11 + 60.0 / 256, 1e-12);
-    r = mpm_restitution_from(&w, 0, 1, 60);
+    r = mpm_rebound_from(&w, 0, 1, 60);
     CHECK_RELATIVE("... and the same from the moving slab", r.noise, 2, 1e-11);
     mpm_free(&w);
 }
@@ -560,7 +560,7 @@ static double mass_of(const mpm_world *w, int32_t body, double radius, double le
     double sum = 0;
     int32_t i;
     for (i = w->body[body].first; i < w->body[body].first + w->body[body].count; i++)
-        if ((p->flags[i] & MPM_SURFACE) && (double)p->x[0][i] < radius && (double)p->bond[i] >= least)
+        if ((p->flags[i] & MPM_POINT_SURFACE) && (double)p->x[0][i] < radius && (double)p->bond[i] >= least)
             sum += (double)p->mass[i];
     return sum;
 }

@@ -51,7 +51,7 @@ static int step(mpm_pull *p, mpm_world *w, const mpm_bond *b, mpm_real dt)
 {
     mpm_status s;
     while ((s = mpm_locate(w)) == MPM_ERR_FULL)
-        if (mpm_grow(w, NULL, 0) != MPM_OK) return -1;
+        if (mpm_reserve(w, NULL, 0) != MPM_OK) return -1;
     if (s < 0) return -1;
     mpm_p2g(w);
     mpm_forces(w, dt);

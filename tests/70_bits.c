@@ -187,7 +187,7 @@ static uint64_t bits_elastic(void)
     d.side[0] = MPM_SIDE_FIXED;
     d.normal = MPM_NORMAL_AVERAGE;
     a.velocity[0] = 80;
-    b.absorb = MPM_SIDES;
+    b.absorb = MPM_FACE_RIM;
     if (mpm_init(&w, &d, NULL, 0) != MPM_OK || mpm_body_add(&w, &a) != MPM_OK || mpm_body_add(&w, &b) != MPM_OK)
         return 0;
     for (n = 0; n < 500; n++)

@@ -21,7 +21,7 @@ typedef enum manufactured_motion {
 typedef struct manufactured {
     manufactured_motion motion;
     mpm_geometry geometry;     /* MPM_PLANE_STRAIN, or for the axes MPM_3D */
-    mpm_shape_function shape;
+    mpm_basis basis;
     double amplitude;          /* A: length, or angle */
     int cells;                 /* per unit length */
     int per_cell;              /* points per cell and direction */
@@ -37,7 +37,7 @@ static inline manufactured manufactured_default(manufactured_motion motion)
     manufactured m;
     m.motion = motion;
     m.geometry = MPM_PLANE_STRAIN;
-    m.shape = MPM_GIMP;
+    m.basis = MPM_GIMP;
     m.amplitude = motion == MANUFACTURED_AXES ? 0.05 : 1;
     m.cells = 16;
     m.per_cell = 2;
@@ -143,7 +143,7 @@ static inline mpm_status manufactured_begin(manufactured *m, mpm_world *w)
     int32_t i;
     int a;
     d.geometry = m->geometry;
-    d.shape = m->shape;
+    d.basis = m->basis;
     d.cell = (mpm_real)(1.0 / m->cells);
     d.user_fields = 6;
     for (a = 0; a < 3; a++) d.cells[a] = axes ? m->cells : 2 * (5 * m->cells / 4 + margin);

@@ -51,7 +51,7 @@ static inline mpm_status scene_step(mpm_world *w, mpm_bond *b, mpm_real dt)
 {
     mpm_status s;
     while ((s = mpm_locate(w)) == MPM_ERR_FULL)
-        if (mpm_grow(w, NULL, 0) != MPM_OK) return MPM_ERR_MEMORY;
+        if (mpm_reserve(w, NULL, 0) != MPM_OK) return MPM_ERR_MEMORY;
     if (s < 0) return s;
     mpm_p2g(w);
     mpm_forces(w, dt);

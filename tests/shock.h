@@ -12,7 +12,7 @@
 /* What is shot at what. Plate 0 comes from below; the interface is at z = 0 when they meet. */
 typedef struct shock {
     mpm_material plate[2];
-    mpm_shape_function shape;
+    mpm_basis basis;
     double speed;   /* of plate 0 against plate 1 [m/s] */
     double rest;    /* velocity of plate 1: 0 laboratory frame, -speed/2 centre frame of equal plates */
     int bodies;     /* 1: one body whose velocity jumps (of plate[0]); 2: two bodies in contact */
@@ -58,7 +58,7 @@ static inline shock shock_default(const char *metal, double speed)
     s.plate[0] = s.plate[1] = shock_fluid(metal);
     shock_settings(&s.plate[0]);
     shock_settings(&s.plate[1]);
-    s.shape = MPM_GIMP;
+    s.basis = MPM_GIMP;
     s.speed = speed;
     s.rest = 0;
     s.bodies = 1;
@@ -116,7 +116,7 @@ static inline mpm_status shock_begin(shock *s, mpm_world *w)
     int32_t i;
     int k;
     d.geometry = MPM_PLANE_STRAIN;
-    d.shape = s->shape;
+    d.basis = s->basis;
     d.cell = 1;
     d.cells[2] = 2 * (s->cells + margin);
     d.origin[2] = -(mpm_real)(s->cells + margin);

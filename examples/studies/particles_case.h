@@ -213,7 +213,7 @@ static inline void particles_report(const impact *s, const particles_case *q, pa
         int32_t i;
         r[a].bond = mpm_bond_measure_body(w, a);
         r[a].nodes = mpm_bond_interface(w, a, -1).bonded;
-        r[a].ejected = mpm_restitution(w, a, 60).ejected_mass / mpm_body_totals(w, a).mass;
+        r[a].ejected = mpm_rebound_of(w, a, 60).ejected_mass / mpm_body_totals(w, a).mass;
         for (i = body->first; i < body->first + body->count; i++) {
             mass += (double)w->points.mass[i];
             high += (double)w->points.mass[i] * (double)w->points.x[2][i];

@@ -42,7 +42,7 @@ static inline int touch_after(impact_case c, double ns, touch *t, char *message,
     b = &run.world.body[IMPACT_PARTICLE];
     inner = study_median_radius(&run.world, 1e-12);
     for (i = b->first; status >= 0 && i < b->first + b->active; i++) {
-        if (!(p->flags[i] & MPM_SURFACE) || !(p->bond[i] > 0) || study_radius(&run.world, i) < inner) continue;
+        if (!(p->flags[i] & MPM_POINT_SURFACE) || !(p->bond[i] > 0) || study_radius(&run.world, i) < inner) continue;
         t->gap += (double)p->mass[i] * (touch_distance(&run.world, i) - c.spacing);
         mass += (double)p->mass[i];
     }

@@ -193,7 +193,7 @@ static inline double study_within(const mpm_world *w, double radius, double floo
     int32_t i;
     for (i = b->first; i < b->first + b->count; i++)
         if (study_radius(w, i) <= radius &&
-            (!(floor > 0) || ((p->flags[i] & MPM_SURFACE) && (double)p->bond[i] >= floor)))
+            (!(floor > 0) || ((p->flags[i] & MPM_POINT_SURFACE) && (double)p->bond[i] >= floor)))
             mass += (double)p->mass[i];
     return mass;
 }
@@ -215,7 +215,7 @@ static inline double study_median_radius(const mpm_world *w, double floor)
 /* Whether the particle's points up to 60 m/s leave the ground at more than 5 m/s, or most of it is faster than 60. */
 static inline int study_leaves(const mpm_world *w)
 {
-    const mpm_rebound r = mpm_restitution(w, IMPACT_PARTICLE, 60);
+    const mpm_rebound r = mpm_rebound_of(w, IMPACT_PARTICLE, 60);
     return r.filtered > 5 || r.ejected_mass > 0.5 * mpm_body_totals(w, IMPACT_PARTICLE).mass;
 }
 

@@ -17,7 +17,7 @@ int main(void)
     mpm_world w;
     int n;
     d.side[0] = d.side[2] = MPM_SIDE_SYMMETRY;
-    slab.absorb = MPM_BOTTOM | MPM_SIDES;
+    slab.absorb = MPM_FACE_BOTTOM | MPM_FACE_RIM;
     if (mpm_init(&w, &d, NULL, 0) != MPM_OK || mpm_body_add(&w, &ball) != MPM_OK || mpm_body_add(&w, &slab) != MPM_OK)
         return 1;
     for (n = 0; n < 600; n++)

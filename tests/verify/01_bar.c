@@ -19,14 +19,14 @@ static mpm_status bar_stress(const void *material, const mpm_block *b)
 /* A bar of the given length and cells along x behind x = gap, one cell thick, two points per cell and
    direction, between sliding planes. */
 static void bar_begin(mpm_world *w, mpm_material *m, double length, double gap, int cells, int spare,
-                      mpm_shape_function shape, mpm_side end, mpm_stress_fn stress)
+                      mpm_basis basis, mpm_side end, mpm_stress_fn stress)
 {
     const double cell = length / cells;
     mpm_desc d = scene_grid(cell, cells + spare, 1, 1, 0, 0, 0);
     mpm_shape box = mpm_box((mpm_real)gap, 0, 0, (mpm_real)(gap + length), 1, (mpm_real)cell);
     mpm_body_desc b = scene_body(m, box, cell / 2, 0);
     d.geometry = MPM_PLANE_STRAIN;
-    d.shape = shape;
+    d.basis = basis;
     d.side[0] = end;
     d.side[4] = d.side[5] = MPM_SIDE_SYMMETRY;
     b.stress = stress;
@@ -46,7 +46,7 @@ typedef struct vibration {
 } vibration;
 
 /* Five periods. The scheme is a leapfrog: the velocities it holds at t belong to t - dt/2. */
-static vibration vibrate(mpm_shape_function shape, mpm_side end, mpm_stress_fn stress, int cells, double v0)
+static vibration vibrate(mpm_basis basis, mpm_side end, mpm_stress_fn stress, int cells, double v0)
 {
     const double dt = 0.02 * length / cells, amplitude = v0 * 2 / pi;
     mpm_material m = elastic(young, 0, 1);
@@ -56,7 +56,7 @@ static vibration vibrate(mpm_shape_function shape, mpm_side end, mpm_stress_fn s
     mpm_world w;
     int32_t i;
     int zeros = 0;
-    bar_begin(&w, &m, length, 0, cells, 2, shape, end, stress);
+    bar_begin(&w, &m, length, 0, cells, 2, basis, end, stress);
     for (i = 0; i < w.points.count; i++)
         w.points.v[0][i] = (mpm_real)(v0 * sin(pi * (double)w.points.x[0][i] / (2 * length)));
     e0 = mpm_body_totals(&w, -1).kinetic;
@@ -81,7 +81,7 @@ enum { GRIDS = 5 }; /* of 10, 20, 40, 80, 160 cells */
 
 typedef struct series {
     const char *name;
-    mpm_shape_function shape;
+    mpm_basis basis;
     mpm_side end;
     double v0;
     int second_order; /* claimed */
@@ -94,7 +94,7 @@ static void series_run(series *s)
     int g;
     for (g = 0; g < GRIDS; g++) {
         double order;
-        s->got[g] = vibrate(s->shape, s->end, bar_stress, 10 << g, s->v0);
+        s->got[g] = vibrate(s->basis, s->end, bar_stress, 10 << g, s->v0);
         if (g == 0) continue;
         order = order_of(s->got[g - 1].error, s->got[g].error);
         s->order[0] += order / (GRIDS - 1);
@@ -155,7 +155,7 @@ typedef struct bounce {
 
 /* Contact begins and ends where the straight line through 2 % and 98 % of the wall's impulse, of which
    the exact one is 2 m v, meets none and all of it. */
-static bounce throw_rod(mpm_shape_function shape, int cells)
+static bounce throw_rod(mpm_basis basis, int cells)
 {
     const double cell = rod / cells, dt = 0.3 * cell / wave, full = 2 * 0.73 * rod * cell * speed;
     mpm_material m = elastic(3e7, 0, 0.73);
@@ -163,7 +163,7 @@ static bounce throw_rod(mpm_shape_function shape, int cells)
     bounce r;
     mpm_world w;
     int32_t i;
-    bar_begin(&w, &m, rod, gap, cells, 4 + cells / 20, shape, MPM_SIDE_WALL, bar_stress);
+    bar_begin(&w, &m, rod, gap, cells, 4 + cells / 20, basis, MPM_SIDE_WALL, bar_stress);
     for (i = 0; i < w.points.count; i++) w.points.v[0][i] = (mpm_real)-speed;
     while ((double)w.time < 3.6e-3 && mpm_step(&w, (mpm_real)dt) >= 0) {
         if (w.ledger.impulse[0] < 0.02 * full) low = (double)w.time;
@@ -176,12 +176,12 @@ static bounce throw_rod(mpm_shape_function shape, int cells)
     return r;
 }
 
-static void rod_rows(mpm_shape_function shape, int cells)
+static void rod_rows(mpm_basis basis, int cells)
 {
     const double contact = gap / speed, cell = rod / cells;
-    const bounce r = throw_rod(shape, cells);
+    const bounce r = throw_rod(basis, cells);
     char line[200];
-    snprintf(line, sizeof line, "rod on a wall, %s, %d cells: contact begins", shape ? "GIMP" : "linear", cells);
+    snprintf(line, sizeof line, "rod on a wall, %s, %d cells: contact begins", basis ? "GIMP" : "linear", cells);
     verify_near(line, "gap / v, a cell early at most", contact, r.start, cell / speed);
     verify_percent("... contact lasts", "2 L / c", 2 * rod / wave, r.release - r.start, 1);
     verify_percent("... release", "gap / v + 2 L / c", contact + 2 * rod / wave, r.release, 1);

@@ -8,7 +8,7 @@ static const double touch = 1.08579;           /* (sqrt(0.5) - 2 radius) / (2 sq
 /* How the disks meet. */
 typedef struct method {
     const char *name;
-    mpm_shape_function shape;
+    mpm_basis basis;
     mpm_contact_law law;
     int points; /* contact of points: logistic normals and separation; else of nodes */
 } method;
@@ -29,7 +29,7 @@ static void disks_begin(mpm_world *w, mpm_material *m, int n, const method *how)
     mpm_desc d = scene_grid(cell, n, 1, n, 0, 0, 0);
     mpm_body_desc b = scene_body(m, mpm_sphere(MPM_R(0.25), 0, MPM_R(0.25), (mpm_real)radius), cell / 2, speed);
     d.geometry = MPM_PLANE_STRAIN;
-    d.shape = how->shape;
+    d.basis = how->basis;
     d.contact = how->law;
     d.separation = how->points;
     if (how->points) d.normal = MPM_NORMAL_LOGISTIC;

@@ -66,10 +66,10 @@ static void axes(void)
     m.amplitude = 1e-6;
     verify_near("axes, GIMP, A = 1e-6: order, 1/64 to 1/128", SOURCE, 2,
                 order("GIMP, A = 1e-6", m, plane_sizes, 0), 0.25);
-    m.shape = MPM_LINEAR;
+    m.basis = MPM_LINEAR;
     verify_near("axes, linear, A = 1e-6: order, 1/64 to 1/128", SOURCE, 2,
                 order("linear, A = 1e-6", m, plane_sizes, 0), 0.25);
-    m.shape = MPM_GIMP;
+    m.basis = MPM_GIMP;
     m.geometry = MPM_3D;
     verify_range("axes, GIMP, A = 1e-6, unit cube: order, fit", SOURCE, 1.75, 3,
                  order("GIMP, A = 1e-6, cube", m, solid_sizes, 1));
@@ -83,7 +83,7 @@ static void axes(void)
     verify_measured("axes, GIMP, A = 0.05, 4 x 4 points per cell: order, fit", SOURCE,
                     order("GIMP, A = 0.05, 4 x 4 points", m, short_sizes, 1));
     m.per_cell = 2;
-    m.shape = MPM_LINEAR;
+    m.basis = MPM_LINEAR;
     verify_measured("axes, linear, A = 0.05 (as published): order, fit", SOURCE,
                     order("linear, A = 0.05", m, short_sizes, 1));
     verify_remark(errors);
@@ -111,16 +111,16 @@ static void vortex(void)
     verify_range("vortex, GIMP, A = 0.001, 4 x 4 points per cell: order, fit", SOURCE, 1, 2.25,
                  order("GIMP, A = 0.001, 4 x 4 points", m, coarse_sizes, 1));
     m.per_cell = 2;
-    m.shape = MPM_LINEAR;
+    m.basis = MPM_LINEAR;
     verify_range("vortex, linear, A = 0.001: order, fit", SOURCE, 1, 2.25,
                  order("linear, A = 0.001", m, short_sizes, 1));
-    m.shape = MPM_GIMP;
+    m.basis = MPM_GIMP;
     m.amplitude = 0.1;
     verify_range("vortex, GIMP, A = 0.1 (shear up to 0.6): order, fit", SOURCE, 1, 2.25,
                  order("GIMP, A = 0.1", m, short_sizes, 1));
-    m.shape = MPM_LINEAR;
+    m.basis = MPM_LINEAR;
     verify_measured("vortex, linear, A = 0.1: order, fit", SOURCE, order("linear, A = 0.1", m, short_sizes, 1));
-    m.shape = MPM_GIMP;
+    m.basis = MPM_GIMP;
     m.amplitude = 1;
     m.cells = 16;
     verify_measured("vortex, GIMP, A = 1 (shear up to 6): error at 1/16, -1: falls apart", SOURCE,

@@ -42,7 +42,7 @@ static void compare(const char *name, shock s, int k)
 
 static shock centre(shock s)
 {
-    s.shape = MPM_LINEAR;
+    s.basis = MPM_LINEAR;
     s.rest = -s.speed / 2;
     s.bodies = 1;
     return s;
@@ -50,7 +50,7 @@ static shock centre(shock s)
 
 static shock laboratory(shock s)
 {
-    s.shape = MPM_GIMP;
+    s.basis = MPM_GIMP;
     s.rest = 0;
     s.bodies = 2;
     return s;
@@ -109,7 +109,7 @@ static void without_strength(void)
     drift("Al on Cu, GIMP: in Al, lab frame, 8 points per cell: pressure error, %", 0, 200, 8);
     trend();
     s = laboratory(shock_default("al", 810));
-    s.shape = MPM_LINEAR;
+    s.basis = MPM_LINEAR;
     r = shock_run(&s, 1);
     verify_measured("Al, lab frame, linear, two bodies: particle velocity (405)", SOURCE, r.velocity);
     verify_measured("Al, lab frame, linear, two bodies: pressure (6.483)", SOURCE, r.pressure / 1000);

@@ -20,7 +20,7 @@ static mpm_status advance(mpm_world *w, double dt)
 {
     mpm_status s;
     while ((s = mpm_step(w, (mpm_real)dt)) == MPM_ERR_FULL)
-        if (mpm_grow(w, NULL, 0) != MPM_OK) break;
+        if (mpm_reserve(w, NULL, 0) != MPM_OK) break;
     return s;
 }
 
@@ -48,7 +48,7 @@ static void incline_begin(mpm_world *w, mpm_material *m, rider what, ground on, 
                             (int)(1.5 / cell) + below, 0, 0, -below * cell);
     mpm_body_desc b = scene_body(m, mpm_box(MPM_R(0.5), 0, 0, MPM_R(2.5), 1, 1), cell / 2, 0), slab = b;
     d.geometry = what == BALL ? MPM_3D : MPM_PLANE_STRAIN;
-    d.shape = MPM_GIMP;
+    d.basis = MPM_GIMP;
     d.points = 100000;
     d.side[2] = MPM_SIDE_SYMMETRY;
     d.side[4] = on == WALL ? MPM_SIDE_WALL : MPM_SIDE_FIXED;
@@ -184,7 +184,7 @@ static impact hertz(ground on, int n, double v)
     int i, last = 0;
     d.points = 200000;
     d.geometry = MPM_AXISYMMETRIC;
-    d.shape = MPM_GIMP;
+    d.basis = MPM_GIMP;
     d.side[0] = MPM_SIDE_SYMMETRY;
     if (on == WALL) d.side[4] = MPM_SIDE_WALL;
     meet(&d, on);

@@ -179,9 +179,9 @@ static int plate(mpm_world *w, const solid *m, mpm_material *al, const packet *k
     d.geometry = MPM_PLANE_STRAIN;
     d.side[0] = d.side[1] = MPM_SIDE_SYMMETRY;
     d.points = mpm_shape_count(&d, &b.shape, b.spacing);
-    b.absorb = MPM_BOTTOM;
-    b.absorb_a = (mpm_real)k->a;
-    b.absorb_b = (mpm_real)k->b;
+    b.absorb = MPM_FACE_BOTTOM;
+    b.absorb_normal = (mpm_real)k->a;
+    b.absorb_shear = (mpm_real)k->b;
     if (mpm_init(w, &d, NULL, 0) != MPM_OK || mpm_body_add(w, &b) != MPM_OK) return 0;
     load(w, m, k, s);
     return 1;
@@ -249,8 +249,8 @@ static double area_acting(mpm_material *al, int absorb, double a, double b, int 
     d.points = mpm_shape_count(&d, &c.shape, c.spacing);
     c.velocity[axis] = 1;
     c.absorb = absorb;
-    c.absorb_a = (mpm_real)(a / (double)c.wave_p);
-    c.absorb_b = (mpm_real)(b / (double)c.wave_s);
+    c.absorb_normal = (mpm_real)(a / (double)c.wave_p);
+    c.absorb_shear = (mpm_real)(b / (double)c.wave_s);
     if (mpm_init(&w, &d, NULL, 0) != MPM_OK) return NAN;
     if (mpm_body_add(&w, &c) == MPM_OK && mpm_locate(&w) == MPM_OK) {
         mpm_p2g(&w);
@@ -265,19 +265,19 @@ static void areas(mpm_material *al)
 {
     const double R = 15, H = 10, bottom = PI * R * R, side = 2 * PI * R * H;
     verify_percent("bottom, moved along z: pi R^2", "geometry", bottom,
-                   area_acting(al, MPM_BOTTOM, 1, 0, 2, R, H, 0.75, 0), 1e-10);
+                   area_acting(al, MPM_FACE_BOTTOM, 1, 0, 2, R, H, 0.75, 0), 1e-10);
     verify_percent("circumference, moved along z: 2 pi R H", "geometry", side,
-                   area_acting(al, MPM_SIDES, 0, 1, 2, R, H, 0.75, 0), 1e-10);
+                   area_acting(al, MPM_FACE_RIM, 0, 1, 2, R, H, 0.75, 0), 1e-10);
     verify_percent("both: 2 pi R H + pi R^2", "geometry", side + bottom,
-                   area_acting(al, MPM_SIDES | MPM_BOTTOM, 1, 1, 2, R, H, 0.75, 0), 1e-10);
+                   area_acting(al, MPM_FACE_RIM | MPM_FACE_BOTTOM, 1, 1, 2, R, H, 0.75, 0), 1e-10);
     verify_percent("both, of a quarter, times 4", "geometry", side + bottom,
-                   area_acting(al, MPM_SIDES | MPM_BOTTOM, 1, 1, 2, R, H, 0.75, 1), 1e-10);
+                   area_acting(al, MPM_FACE_RIM | MPM_FACE_BOTTOM, 1, 1, 2, R, H, 0.75, 1), 1e-10);
     verify_percent("both, R = 13.3, H = 9.1, spacing 1.1", "geometry", 2 * PI * 13.3 * 9.1 + PI * 13.3 * 13.3,
-                   area_acting(al, MPM_SIDES | MPM_BOTTOM, 1, 1, 2, 13.3, 9.1, 1.1, 0), 1e-10);
+                   area_acting(al, MPM_FACE_RIM | MPM_FACE_BOTTOM, 1, 1, 2, 13.3, 9.1, 1.1, 0), 1e-10);
     verify_percent("circumference, moved along x: normal part, pi R H", "integral of cos^2", side / 2,
-                   area_acting(al, MPM_SIDES, 1, 0, 0, R, H, 0.75, 0), 1e-10);
+                   area_acting(al, MPM_FACE_RIM, 1, 0, 0, R, H, 0.75, 0), 1e-10);
     verify_percent("circumference, moved along y: tangential part, pi R H", "integral of sin^2", side / 2,
-                   area_acting(al, MPM_SIDES, 0, 1, 1, R, H, 0.75, 0), 1e-10);
+                   area_acting(al, MPM_FACE_RIM, 0, 1, 1, R, H, 0.75, 0), 1e-10);
 }
 
 /* ---- the section ----------------------------------------------------------------------------- */

@@ -13,7 +13,7 @@ typedef struct telling {
     int axis[3], sign[3];
     int mirrors;         /* 1: plane y = 0; 2: and x = 0, of the reference */
     int cylinder;        /* a cylinder with dampers, which stands along z only; or a free box */
-    mpm_shape_function shape;
+    mpm_basis basis;
     mpm_normal_rule normal;
     double faster;       /* relative change of the impact speed */
 } telling;
@@ -57,7 +57,7 @@ static mpm_desc grid_of(const telling *t, double length)
     }
     for (a = 0; a < 2; a++)
         if (t->mirrors > 1 - a) d.side[2 * t->axis[a] + (t->sign[a] < 0)] = MPM_SIDE_SYMMETRY;
-    d.shape = t->shape;
+    d.basis = t->basis;
     d.normal = t->normal;
     d.friction = MPM_R(0.2);
     return d;
@@ -91,7 +91,7 @@ static int begin(scene *s, const telling *t)
     if (t->cylinder) {
         block.shape = mpm_cylinder(0, 0, (mpm_real)(-6 * s->length), (mpm_real)(9 * s->length),
                                    (mpm_real)(6 * s->length));
-        block.absorb = MPM_BOTTOM | MPM_SIDES;
+        block.absorb = MPM_FACE_BOTTOM | MPM_FACE_RIM;
     }
     d.points = mpm_shape_count(&d, &ball.shape, ball.spacing) + mpm_shape_count(&d, &block.shape, block.spacing);
     if (mpm_init(&s->world, &d, NULL, 0) != MPM_OK) return 0;
@@ -192,11 +192,11 @@ static void describe(const scene *r)
 }
 
 /* Mirrors and units, on the scene with dampers. */
-static void mirrored(mpm_shape_function shape, mpm_normal_rule normal)
+static void mirrored(mpm_basis basis, mpm_normal_rule normal)
 {
     telling t = whole(1);
     scene r;
-    t.shape = shape;
+    t.basis = basis;
     t.normal = normal;
     if (!tell(&r, &t)) {
         verify_near("reference", "runs", 0, NAN, 0);
@@ -213,7 +213,7 @@ static void mirrored(mpm_shape_function shape, mpm_normal_rule normal)
     t.units = mpm_units_mm_ms_g();
     row(&r, &t, "quarter, mm ms g");
     t = whole(1);
-    t.shape = shape;
+    t.basis = basis;
     t.normal = normal;
     t.faster = 1e-9;
     verify_measured("for scale: speed raised by 1e-9", "", difference(&r, &t));
@@ -221,7 +221,7 @@ static void mirrored(mpm_shape_function shape, mpm_normal_rule normal)
 }
 
 /* Turned and reversed, on the free block. */
-static void turned(mpm_shape_function shape, mpm_normal_rule normal)
+static void turned(mpm_basis basis, mpm_normal_rule normal)
 {
     static const struct { const char *name; int axis[3], sign[3]; } way[] = {
         {"along x (x and z change places)", {2, 1, 0}, {1, 1, 1}},
@@ -232,7 +232,7 @@ static void turned(mpm_shape_function shape, mpm_normal_rule normal)
     telling t = whole(0);
     scene r;
     int i;
-    t.shape = shape;
+    t.basis = basis;
     t.normal = normal;
     if (!tell(&r, &t)) {
         verify_near("reference", "runs", 0, NAN, 0);

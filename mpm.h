@@ -662,891 +662,25 @@ MPM_API const char *mpm_version(void);
 extern "C" {
 #endif
 
-/* ---- small tools --------------------------------------------------------------------------- */
+/* ---- the step ----------------------------------------------------------------------------- */
 
-MPM_API const char *mpm_version(void) { return MPM_VERSION; }
-
-MPM_API const char *mpm_status_text(mpm_status s)
+MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt)
 {
-    switch (s) {
-#define MPM__STATUS_TEXT(name, number, text) \
-    case name: return text;
-        MPM_STATUS_LIST(MPM__STATUS_TEXT)
-#undef MPM__STATUS_TEXT
-    default: return "unknown status";
-    }
-}
-
-static inline mpm_units mpm__units(double length, double mass, double time)
-{
-    mpm_units u;
-    u.length = length;
-    u.mass = mass;
-    u.time = time;
-    return u;
-}
-
-MPM_API mpm_units mpm_units_si(void) { return mpm__units(1, 1, 1); }
-MPM_API mpm_units mpm_units_um_us_ng(void) { return mpm__units(1e-6, 1e-12, 1e-6); }
-MPM_API mpm_units mpm_units_mm_ms_g(void) { return mpm__units(1e-3, 1e-3, 1e-3); }
-
-MPM_API double mpm_units_velocity(const mpm_units *u) { return u->length / u->time; }
-MPM_API double mpm_units_density(const mpm_units *u) { return u->mass / (u->length * u->length * u->length); }
-MPM_API double mpm_units_stress(const mpm_units *u) { return u->mass / (u->length * u->time * u->time); }
-MPM_API double mpm_units_energy(const mpm_units *u)
-{
-    return u->mass * u->length * u->length / (u->time * u->time);
-}
-MPM_API double mpm_units_specific_energy(const mpm_units *u)
-{
-    return u->length * u->length / (u->time * u->time);
-}
-MPM_API double mpm_units_area_energy(const mpm_units *u) { return u->mass / (u->time * u->time); }
-
-MPM_API mpm_real mpm_wave_speed_p(mpm_real young, mpm_real poisson, mpm_real density)
-{
-    return mpm_sqrt(young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson) * density));
-}
-
-MPM_API mpm_real mpm_wave_speed_s(mpm_real young, mpm_real poisson, mpm_real density)
-{
-    return mpm_sqrt(young / (2 * (1 + poisson) * density));
-}
-
-/* ---- shapes -------------------------------------------------------------------------------- */
-
-static inline mpm_shape mpm__shape(mpm_shape_kind kind, const mpm_real *low, const mpm_real *high)
-{
-    mpm_shape s;
-    int d;
-    s.kind = kind;
-    for (d = 0; d < 3; d++) {
-        s.center[d] = (low[d] + high[d]) / 2;
-        s.half[d] = (high[d] - low[d]) / 2;
-    }
+    mpm_status s = mpm_locate(w);
+    if (s < 0) return s;
+    mpm_p2g(w);
+    mpm_forces(w, dt);
+    mpm_grid_update(w, dt);
+    mpm_contact_find(w);
+    mpm_contact_apply(w, dt);
+    mpm_g2p(w, dt);
+    mpm_musl(w, dt);
+    if (mpm_stress(w, dt) < 0) return w->fault.status;
+    mpm_move(w, dt);
     return s;
-}
-
-MPM_API mpm_shape mpm_ellipsoid(mpm_real x, mpm_real y, mpm_real z, mpm_real a, mpm_real b, mpm_real c)
-{
-    mpm_shape s;
-    s.kind = MPM_SHAPE_ELLIPSOID;
-    s.center[0] = x;
-    s.center[1] = y;
-    s.center[2] = z;
-    s.half[0] = a;
-    s.half[1] = b;
-    s.half[2] = c;
-    return s;
-}
-
-MPM_API mpm_shape mpm_sphere(mpm_real x, mpm_real y, mpm_real z, mpm_real radius)
-{
-    return mpm_ellipsoid(x, y, z, radius, radius, radius);
-}
-
-MPM_API mpm_shape mpm_cylinder(mpm_real x, mpm_real y, mpm_real z_bottom, mpm_real radius, mpm_real height)
-{
-    mpm_real low[3], high[3];
-    low[0] = x - radius;
-    low[1] = y - radius;
-    low[2] = z_bottom;
-    high[0] = x + radius;
-    high[1] = y + radius;
-    high[2] = z_bottom + height;
-    return mpm__shape(MPM_SHAPE_CYLINDER, low, high);
-}
-
-MPM_API mpm_shape mpm_box(mpm_real x0, mpm_real y0, mpm_real z0, mpm_real x1, mpm_real y1, mpm_real z1)
-{
-    mpm_real low[3], high[3];
-    low[0] = x0;
-    low[1] = y0;
-    low[2] = z0;
-    high[0] = x1;
-    high[1] = y1;
-    high[2] = z1;
-    return mpm__shape(MPM_SHAPE_BOX, low, high);
-}
-
-/* The section of s in the plane of a two-dimensional problem: y no longer matters. */
-static inline int mpm__contains(const mpm_shape *s, const mpm_real *x, int flat, mpm_real shrink)
-{
-    mpm_real q[3];
-    int d;
-    for (d = 0; d < 3; d++) {
-        mpm_real half = s->half[d] - shrink;
-        if (half <= 0) return 0;
-        q[d] = (d == 1 && flat) ? 0 : (x[d] - s->center[d]) / half;
-    }
-    switch (s->kind) {
-    case MPM_SHAPE_ELLIPSOID: return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] <= 1;
-    case MPM_SHAPE_CYLINDER: return q[0] * q[0] + q[1] * q[1] <= 1 && q[2] >= -1 && q[2] <= 1;
-    case MPM_SHAPE_BOX: return q[0] >= -1 && q[0] <= 1 && q[1] >= -1 && q[1] <= 1 && q[2] >= -1 && q[2] <= 1;
-    default: return 0;
-    }
-}
-
-MPM_API int mpm_shape_contains(const mpm_shape *s, mpm_real x, mpm_real y, mpm_real z)
-{
-    mpm_real q[3];
-    q[0] = x;
-    q[1] = y;
-    q[2] = z;
-    return mpm__contains(s, q, 0, 0);
 }
 
 static inline int mpm__flat(const mpm_desc *d) { return d->geometry != MPM_3D; }
-
-static inline mpm_real mpm__grid_high(const mpm_desc *d, int axis)
-{
-    return d->origin[axis] + (mpm_real)d->cells[axis] * d->cell;
-}
-
-/* A walk over the lattice points of a shape, in order of z, y, x. The lattice is symmetric about
-   the centre; a cylinder's or box's last layer lies half a spacing below its upper face. */
-typedef struct mpm__lattice {
-    int32_t n[3], i[3];
-    mpm_real start[3], spacing;
-} mpm__lattice;
-
-static inline mpm__lattice mpm__lattice_begin(const mpm_desc *d, const mpm_shape *s, mpm_real spacing)
-{
-    mpm__lattice l;
-    int a;
-    l.spacing = spacing;
-    for (a = 0; a < 3; a++) {
-        mpm_real across = s->half[a] / spacing;
-        if (s->kind == MPM_SHAPE_BOX || (s->kind == MPM_SHAPE_CYLINDER && a == 2))
-            l.n[a] = (int32_t)(2 * across + MPM_R(0.5));
-        else
-            l.n[a] = 2 * (int32_t)(across + 1);
-        if (l.n[a] < 1) l.n[a] = 1;
-        l.start[a] = s->center[a] - MPM_R(0.5) * (mpm_real)(l.n[a] - 1) * spacing;
-        l.i[a] = 0;
-    }
-    if (s->kind != MPM_SHAPE_ELLIPSOID)
-        l.start[2] = s->center[2] + s->half[2] - ((mpm_real)l.n[2] - MPM_R(0.5)) * spacing;
-    if (mpm__flat(d)) {
-        l.n[1] = 1;
-        l.start[1] = 0;
-    }
-    l.i[0] = -1;
-    return l;
-}
-
-/* The next lattice point that belongs to the shape and is not cut off by a symmetry plane. */
-static inline int mpm__lattice_next(mpm__lattice *l, const mpm_desc *d, const mpm_shape *s, mpm_real *x)
-{
-    for (;;) {
-        int a, cut = 0;
-        for (a = 0; ++l->i[a] == l->n[a]; a++) {
-            if (a == 2) return 0;
-            l->i[a] = 0;
-        }
-        for (a = 0; a < 3; a++) {
-            x[a] = l->start[a] + (mpm_real)l->i[a] * l->spacing;
-            if (a == 1 && mpm__flat(d)) continue;
-            if (d->side[2 * a] == MPM_SIDE_SYMMETRY && x[a] < d->origin[a]) cut = 1;
-            if (d->side[2 * a + 1] == MPM_SIDE_SYMMETRY && x[a] > mpm__grid_high(d, a)) cut = 1;
-        }
-        if (cut) continue;
-        /* the lattice itself bounds boxes and the height of cylinders */
-        if (s->kind == MPM_SHAPE_BOX) return 1;
-        if (s->kind == MPM_SHAPE_CYLINDER) {
-            mpm_real q[3];
-            q[0] = x[0];
-            q[1] = x[1];
-            q[2] = s->center[2];
-            if (mpm__contains(s, q, mpm__flat(d), 0)) return 1;
-        } else if (mpm__contains(s, x, mpm__flat(d), 0)) {
-            return 1;
-        }
-    }
-}
-
-MPM_API int32_t mpm_shape_count(const mpm_desc *d, const mpm_shape *s, mpm_real spacing)
-{
-    mpm__lattice l;
-    mpm_real x[3];
-    int32_t n = 0;
-    int a;
-    if (!(spacing > 0)) return 0;
-    for (a = 0; a < 3; a++)
-        if (!(s->half[a] > 0 && s->half[a] / spacing < 1e6)) return 0;
-    l = mpm__lattice_begin(d, s, spacing);
-    if ((double)l.n[0] * l.n[1] * l.n[2] > 2147483647.0) return 0;
-    while (mpm__lattice_next(&l, d, s, x)) n++;
-    return n;
-}
-
-/* ---- describing a problem ------------------------------------------------------------------ */
-
-MPM_API mpm_desc mpm_desc_default(void)
-{
-    mpm_desc d;
-    memset(&d, 0, sizeof d);
-    d.cells[0] = d.cells[1] = d.cells[2] = 1;
-    d.mass_cutoff = MPM_EPSILON * MPM_EPSILON;
-    d.contact_cutoff = MPM_R(1e-3);
-    return d;
-}
-
-MPM_API mpm_body_desc mpm_body_desc_default(void)
-{
-    mpm_body_desc b;
-    memset(&b, 0, sizeof b);
-    b.temperature = 298;
-    b.absorb_normal = b.absorb_shear = 1;
-    b.shell = 1;
-    return b;
-}
-
-/* The choices of a description: each one of its list. */
-static inline mpm_status mpm__desc_choices(const mpm_desc *d, mpm_fault *f)
-{
-    const char *const name[] = {"geometry", "basis", "contact", "normal", "separation"};
-    const int value[] = {(int)d->geometry, (int)d->basis, (int)d->contact, (int)d->normal, d->separation};
-    const int last[] = {MPM_AXISYMMETRIC, MPM_GIMP, MPM_CONTACT_NONE, MPM_NORMAL_LOGISTIC, 1};
-    mpm_status s = MPM_OK;
-    int i;
-    for (i = 0; i < 5 && s == MPM_OK; i++)
-        s = mpm_want(value[i] >= 0 && value[i] <= last[i], f, name[i], (mpm_real)value[i], -1);
-    for (i = 0; i < 6 && s == MPM_OK; i++)
-        s = mpm_want((int)d->side[i] >= 0 && (int)d->side[i] <= MPM_SIDE_WALL, f, "side", (mpm_real)d->side[i], i);
-    return s;
-}
-
-MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *f)
-{
-    mpm_status s = mpm__desc_choices(d, f);
-    double nodes = 1;
-    int a;
-    if (s != MPM_OK) return s;
-    if ((s = mpm_want(d->cell > 0, f, "cell", d->cell, -1)) != MPM_OK) return s;
-    for (a = 0; a < 3; a++) {
-        if ((s = mpm_want(1, f, "origin", d->origin[a], a)) != MPM_OK) return s;
-        if ((s = mpm_want(1, f, "gravity", d->gravity[a], a)) != MPM_OK) return s;
-        if (a == 1 && d->geometry != MPM_3D) continue;
-        if ((s = mpm_want(d->cells[a] >= 1, f, "cells", (mpm_real)d->cells[a], a)) != MPM_OK) return s;
-        nodes *= d->cells[a] + 3.0;
-    }
-    if ((s = mpm_want(nodes < 2147483647.0, f, "cells in all", (mpm_real)nodes, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->points >= 1, f, "points", (mpm_real)d->points, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->bodies >= 1, f, "bodies", (mpm_real)d->bodies, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->nodes >= 0, f, "nodes", (mpm_real)d->nodes, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->friction >= 0, f, "friction", d->friction, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->wall_friction >= 0, f, "wall_friction", d->wall_friction, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->mass_cutoff >= 0, f, "mass_cutoff", d->mass_cutoff, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->contact_cutoff >= 0, f, "contact_cutoff", d->contact_cutoff, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->bond_width >= 0 && d->bond_width <= 2, f, "bond_width", d->bond_width, -1)) != MPM_OK)
-        return s;
-    if ((s = mpm_want(d->user_fields >= 0 && d->user_fields <= MPM_USER_FIELDS, f, "user_fields",
-                       (mpm_real)d->user_fields, -1)) != MPM_OK)
-        return s;
-    if (d->geometry == MPM_AXISYMMETRIC && !(d->origin[0] >= 0))
-        return mpm_fail(f, MPM_ERR_ARGUMENT, "origin of r", d->origin[0], 0);
-    return MPM_OK;
-}
-
-/* ---- memory -------------------------------------------------------------------------------- */
-
-#define MPM__NAMED_FIELDS 20 /* x v mass density stress energy temperature plastic_* bond */
-
-static inline void mpm__grid_sizes(mpm_world *w)
-{
-    int a;
-    w->ghost = w->desc.basis == MPM_GIMP ? 1 : 0;
-    for (a = 0; a < 3; a++) {
-        w->support[a] = w->ghost ? 3 : 2;
-        w->nodes_per_axis[a] = w->desc.cells[a] + 1 + 2 * w->ghost;
-    }
-    if (mpm__flat(&w->desc)) {
-        w->support[1] = 1;
-        w->nodes_per_axis[1] = 1;
-    }
-}
-
-static inline size_t mpm__grid_nodes(const mpm_world *w)
-{
-    return (size_t)w->nodes_per_axis[0] * (size_t)w->nodes_per_axis[1] * (size_t)w->nodes_per_axis[2];
-}
-
-/* Lays out the first block: points and the grid table. Returns its size. Field strides are an odd
-   number of cache lines, so that fields of one point do not compete for the same cache set. */
-static inline size_t mpm__layout_points(mpm_world *w, char *base)
-{
-    mpm_points *p = &w->points;
-    size_t used = 0, n = (size_t)w->desc.points, lines = (n * sizeof(mpm_real) + MPM_ALIGN - 1) / MPM_ALIGN;
-    mpm_real *f;
-    int i;
-    w->fields = MPM__NAMED_FIELDS + w->desc.user_fields;
-    w->stride = (lines | 1) * (MPM_ALIGN / sizeof(mpm_real));
-    w->body = (mpm_body *)mpm_carve(base, &used, (size_t)w->desc.bodies, sizeof(mpm_body));
-    w->field = (mpm_real *)mpm_carve(base, &used, mpm_size_mul(w->stride, (size_t)w->fields), sizeof(mpm_real));
-    w->scratch = (mpm_real *)mpm_carve(base, &used, w->stride, sizeof(mpm_real));
-    p->id = (int32_t *)mpm_carve(base, &used, n, sizeof(int32_t));
-    p->flags = (uint8_t *)mpm_carve(base, &used, n, 1);
-    w->key = (int32_t *)mpm_carve(base, &used, n, sizeof(int32_t));
-    w->order = (int32_t *)mpm_carve(base, &used, n, sizeof(int32_t));
-    w->head = (int32_t *)mpm_carve(base, &used, mpm__grid_nodes(w), sizeof(int32_t));
-    if (!base) return used;
-    f = w->field;
-    for (i = 0; i < 3; i++) p->x[i] = f + (size_t)i * w->stride;
-    for (i = 0; i < 3; i++) p->v[i] = f + (size_t)(3 + i) * w->stride;
-    for (i = 0; i < 6; i++) p->stress[i] = f + (size_t)(6 + i) * w->stride;
-    p->mass = f + 12 * w->stride;
-    p->density = f + 13 * w->stride;
-    p->energy = f + 14 * w->stride;
-    p->temperature = f + 15 * w->stride;
-    p->plastic_strain = f + 16 * w->stride;
-    p->plastic_rate = f + 17 * w->stride;
-    p->plastic_work = f + 18 * w->stride;
-    p->bond = f + 19 * w->stride;
-    for (i = 0; i < w->desc.user_fields; i++) p->user[i] = f + (size_t)(MPM__NAMED_FIELDS + i) * w->stride;
-    return used;
-}
-
-/* Lays out the second block for a number of slots: there are as many runs as slots. */
-static inline size_t mpm__layout_work(mpm_world *w, char *base, int32_t nodes)
-{
-    size_t used = 0, n = (size_t)nodes;
-    size_t reach = (size_t)w->support[0] * (size_t)w->support[1] * (size_t)w->support[2];
-    w->node_capacity = w->run_capacity = w->pair_capacity = nodes;
-    w->node = (mpm_node *)mpm_carve(base, &used, n, sizeof(mpm_node));
-    w->run = (mpm_run *)mpm_carve(base, &used, n, sizeof(mpm_run));
-    w->slot = (int32_t *)mpm_carve(base, &used, mpm_size_mul(n, reach), sizeof(int32_t));
-    w->pair = (mpm_pair *)mpm_carve(base, &used, n, sizeof(mpm_pair));
-    if (w->desc.normal == MPM_NORMAL_LOGISTIC)
-        w->plane = (mpm_plane *)mpm_carve(base, &used, n, sizeof(mpm_plane));
-    return used;
-}
-
-/* A first guess of the slots needed; mpm_body_add corrects it where it may. */
-static inline int32_t mpm__guess_nodes(const mpm_desc *d)
-{
-    return d->nodes ? d->nodes : d->points / 10 + 256;
-}
-
-MPM_API size_t mpm_bytes(const mpm_desc *d)
-{
-    mpm_world w;
-    size_t n;
-    if (mpm_desc_check(d, NULL) != MPM_OK) return 0;
-    memset(&w, 0, sizeof w);
-    w.desc = *d;
-    mpm__grid_sizes(&w);
-    n = mpm__layout_points(&w, NULL);
-    if (n > (size_t)-1 - MPM_ALIGN) return 0;
-    n = mpm_size_add((n + MPM_ALIGN) / MPM_ALIGN * MPM_ALIGN, mpm__layout_work(&w, NULL, mpm__guess_nodes(d)));
-    return n == (size_t)-1 ? 0 : n;
-}
-
-MPM_API size_t mpm_bytes_used(const mpm_world *w) { return w->memory_bytes + w->work_bytes; }
-
-MPM_API mpm_status mpm_init(mpm_world *w, const mpm_desc *d, void *memory, size_t bytes)
-{
-    size_t points, work, i, nodes;
-    mpm_status s;
-    memset(w, 0, sizeof *w);
-    w->fault.index = -1;
-    if ((s = mpm_desc_check(d, &w->fault)) != MPM_OK) return s;
-    w->desc = *d;
-    if (mpm__flat(d)) {
-        w->desc.cells[1] = 1;
-        w->desc.side[2] = w->desc.side[3] = MPM_SIDE_OPEN;
-    }
-    mpm__grid_sizes(w);
-    points = mpm_size_add(mpm__layout_points(w, NULL), MPM_ALIGN) / MPM_ALIGN * MPM_ALIGN;
-    work = mpm__layout_work(w, NULL, mpm__guess_nodes(d));
-    if (mpm_size_add(points, work) == (size_t)-1)
-        return mpm_fail(&w->fault, MPM_ERR_MEMORY, "points", (mpm_real)d->points, -1);
-    if (memory) {
-        if (bytes < points + work)
-            return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
-        w->memory = memory;
-        w->work = (char *)memory + points;
-    } else {
-        w->memory = MPM_MALLOC(points);
-        w->work = w->memory ? MPM_MALLOC(work) : NULL;
-        w->owns_memory = w->owns_work = 1;
-        if (!w->work) {
-            mpm_free(w);
-            return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)(points + work), -1);
-        }
-    }
-    w->memory_bytes = points;
-    w->work_bytes = work;
-    memset(w->memory, 0, points);
-    mpm__layout_points(w, (char *)w->memory);
-    mpm__layout_work(w, (char *)w->work, mpm__guess_nodes(d));
-    w->points.capacity = d->points;
-    for (i = 0, nodes = mpm__grid_nodes(w); i < nodes; i++) w->head[i] = -1;
-    return MPM_OK;
-}
-
-MPM_API void mpm_free(mpm_world *w)
-{
-    if (w->owns_memory && w->memory) MPM_FREE(w->memory);
-    if (w->owns_work && w->work) MPM_FREE(w->work);
-    w->memory = w->work = NULL;
-    w->owns_memory = w->owns_work = 0;
-    w->points.count = 0;
-    w->bodies = 0;
-}
-
-static inline int32_t mpm__grown(const mpm_world *w)
-{
-    int32_t need = w->pairs_possible > w->node_capacity ? w->pairs_possible : w->node_capacity;
-    return need > 1000000000 ? 2000000000 : 2 * need;
-}
-
-MPM_API size_t mpm_reserve_bytes(const mpm_world *w)
-{
-    mpm_world copy = *w;
-    return mpm__layout_work(&copy, NULL, mpm__grown(w));
-}
-
-/* Forgets all slots: the table of nodes is empty again. */
-static inline void mpm__grid_reset(mpm_world *w)
-{
-    int32_t s;
-    for (s = 0; s < w->nodes; s++) w->head[w->node[s].index] = -1;
-    w->nodes = w->runs = w->pairs = w->pairs_possible = 0;
-}
-
-MPM_API mpm_status mpm_reserve(mpm_world *w, void *memory, size_t bytes)
-{
-    const int32_t nodes = mpm__grown(w);
-    size_t need = mpm_reserve_bytes(w);
-    void *block = memory ? memory : MPM_MALLOC(need);
-    if (!block || (memory && bytes < need))
-        return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)need, -1);
-    mpm__grid_reset(w);
-    if (w->owns_work) MPM_FREE(w->work);
-    w->work = block;
-    w->work_bytes = need;
-    w->owns_work = memory == NULL;
-    mpm__layout_work(w, (char *)block, nodes);
-    return MPM_OK;
-}
-
-/* ---- bodies -------------------------------------------------------------------------------- */
-
-static inline mpm_status mpm__body_check(const mpm_world *w, const mpm_body_desc *b, mpm_fault *f)
-{
-    const mpm_shape *s = &b->shape;
-    mpm_status st;
-    int a;
-    if (w->bodies >= w->desc.bodies)
-        return mpm_fail(f, MPM_ERR_FULL, "bodies", (mpm_real)w->desc.bodies, w->bodies);
-    st = mpm_want(s->kind > MPM_SHAPE_NONE && s->kind <= MPM_SHAPE_BOX, f, "shape", (mpm_real)s->kind, -1);
-    if (st != MPM_OK) return st;
-    for (a = 0; a < 3; a++) {
-        if ((st = mpm_want(1, f, "shape.center", s->center[a], a)) != MPM_OK) return st;
-        if ((st = mpm_want(s->half[a] > 0, f, "shape.half", s->half[a], a)) != MPM_OK) return st;
-        if ((st = mpm_want(1, f, "velocity", b->velocity[a], a)) != MPM_OK) return st;
-    }
-    if ((st = mpm_want(b->spacing > 0, f, "spacing", b->spacing, -1)) != MPM_OK) return st;
-    if (b->spacing > w->desc.cell * (1 + 16 * MPM_EPSILON))
-        return mpm_fail(f, MPM_ERR_ARGUMENT, "spacing (larger than the cell)", b->spacing, -1);
-    if ((st = mpm_want(b->density > 0, f, "density", b->density, -1)) != MPM_OK) return st;
-    if ((st = mpm_want(b->temperature >= 0, f, "temperature", b->temperature, -1)) != MPM_OK) return st;
-    if ((st = mpm_want(b->wave_p >= 0, f, "wave_p", b->wave_p, -1)) != MPM_OK) return st;
-    if ((st = mpm_want(b->wave_s >= 0, f, "wave_s", b->wave_s, -1)) != MPM_OK) return st;
-    if ((st = mpm_want(b->absorb_normal >= 0, f, "absorb_normal", b->absorb_normal, -1)) != MPM_OK) return st;
-    if ((st = mpm_want(b->absorb_shear >= 0, f, "absorb_shear", b->absorb_shear, -1)) != MPM_OK) return st;
-    if ((st = mpm_want(b->shell >= 0, f, "shell", b->shell, -1)) != MPM_OK) return st;
-    return MPM_OK;
-}
-
-/* Where on its body a new point lies. Damped faces are cuts through a larger body, not surfaces. */
-static inline uint8_t mpm__flags(const mpm_body_desc *b, const mpm_real *x, int flat)
-{
-    const mpm_shape *s = &b->shape;
-    mpm_shape core = *s;
-    int f = 0, d;
-    if (s->kind != MPM_SHAPE_ELLIPSOID) {
-        mpm_shape wide = *s; /* the circumference alone: without upper and lower face */
-        if (x[2] > s->center[2] + s->half[2] - b->spacing) f |= MPM_FACE_TOP;
-        if (x[2] < s->center[2] - s->half[2] + b->spacing) f |= MPM_FACE_BOTTOM;
-        wide.half[2] *= 4;
-        if (!mpm__contains(&wide, x, flat, b->spacing)) f |= MPM_FACE_RIM;
-    }
-    if (b->absorb & MPM_FACE_BOTTOM) core.center[2] -= 2 * s->half[2], core.half[2] += 2 * s->half[2];
-    if (b->absorb & MPM_FACE_RIM)
-        for (d = 0; d < 2; d++) core.half[d] += 2 * b->shell * b->spacing + s->half[d];
-    if (!mpm__contains(&core, x, flat, b->shell * b->spacing * (1 - 64 * MPM_EPSILON))) f |= MPM_POINT_SURFACE;
-    return (uint8_t)f;
-}
-
-/* Mass that a lattice point stands for: a cube, a unit-depth square, or a ring. */
-static inline mpm_real mpm__point_mass(const mpm_desc *d, const mpm_body_desc *b, const mpm_real *x)
-{
-    mpm_real square = b->density * b->spacing * b->spacing;
-    if (d->geometry == MPM_3D) return square * b->spacing;
-    return d->geometry == MPM_AXISYMMETRIC ? 2 * MPM_PI * x[0] * square : square;
-}
-
-/* The share of a shape that the symmetry planes leave in the grid. */
-static inline mpm_real mpm__kept(const mpm_desc *d, const mpm_body_desc *b)
-{
-    mpm_desc open = *d;
-    int a;
-    for (a = 0; a < 6; a++) open.side[a] = MPM_SIDE_OPEN;
-    return (mpm_real)mpm_shape_count(d, &b->shape, b->spacing) /
-           (mpm_real)mpm_shape_count(&open, &b->shape, b->spacing);
-}
-
-/* The true areas of the damped faces, bottom and circumference (A 3.45, 3.46). */
-static inline void mpm__areas(const mpm_desc *d, mpm_body *b)
-{
-    const mpm_shape *s = &b->desc.shape;
-    mpm_real kept = mpm__kept(d, &b->desc), a = 2 * s->half[0], h = 2 * s->half[2];
-    if (d->geometry == MPM_PLANE_STRAIN) {
-        b->area[0] = a * kept;
-        b->area[1] = 2 * h * kept;
-    } else if (s->kind == MPM_SHAPE_BOX && d->geometry == MPM_3D) {
-        b->area[0] = a * 2 * s->half[1] * kept;
-        b->area[1] = 2 * (a + 2 * s->half[1]) * h * kept;
-    } else {
-        if (d->geometry == MPM_AXISYMMETRIC) kept = 1; /* rings are whole */
-        b->area[0] = MPM_PI * s->half[0] * s->half[0] * kept;
-        b->area[1] = 2 * MPM_PI * s->half[0] * h * kept;
-    }
-}
-
-/* The body whose shape contains x, or -1. */
-static inline int32_t mpm__body_at(const mpm_world *w, const mpm_real *x)
-{
-    int32_t b;
-    for (b = 0; b < w->bodies; b++)
-        if (mpm__contains(&w->body[b].desc.shape, x, mpm__flat(&w->desc), 0)) return b;
-    return -1;
-}
-
-/* The first axis along which x lies outside the grid, or -1. */
-static inline int mpm__axis_outside(const mpm_desc *d, const mpm_real *x)
-{
-    int a;
-    if (d->geometry == MPM_AXISYMMETRIC && !(x[0] > 0)) return 0; /* a ring without mass or radius */
-    for (a = 0; a < 3; a++) {
-        mpm_real t = (x[a] - d->origin[a]) * (1 / d->cell);
-        if (a == 1 && mpm__flat(d)) continue;
-        if (!(t >= 0 && t < (mpm_real)d->cells[a])) return a;
-    }
-    return -1;
-}
-
-/* Writes the points of b behind those in the world, without counting them in. */
-static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
-{
-    mpm_points *p = &w->points;
-    const mpm_body_desc *d = &b->desc;
-    mpm__lattice l = mpm__lattice_begin(&w->desc, &d->shape, d->spacing);
-    int32_t i = p->count, other;
-    double mass = 0;
-    mpm_real x[3];
-    int a, flat = mpm__flat(&w->desc);
-    while (mpm__lattice_next(&l, &w->desc, &d->shape, x)) {
-        if (i >= p->capacity) return mpm_fail(f, MPM_ERR_FULL, "points", (mpm_real)p->capacity, -1);
-        if ((a = mpm__axis_outside(&w->desc, x)) >= 0)
-            return mpm_fail(f, MPM_ERR_OUTSIDE, a == 0 ? "x of a point" : a == 1 ? "y of a point" : "z of a point",
-                             x[a], w->bodies);
-        if ((other = mpm__body_at(w, x)) >= 0)
-            return mpm_fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
-        for (a = 0; a < w->fields; a++) w->field[(size_t)a * w->stride + (size_t)i] = 0;
-        for (a = 0; a < 3; a++) {
-            p->x[a][i] = x[a];
-            p->v[a][i] = d->velocity[a];
-        }
-        p->mass[i] = mpm__point_mass(&w->desc, d, x);
-        p->density[i] = d->density;
-        p->temperature[i] = d->temperature;
-        p->flags[i] = mpm__flags(d, x, flat);
-        p->id[i] = i;
-        if (p->flags[i] & MPM_FACE_BOTTOM) b->mass[0] += p->mass[i];
-        if (p->flags[i] & MPM_FACE_RIM) b->mass[1] += p->mass[i];
-        mass += (double)p->mass[i];
-        i++;
-    }
-    if (i == p->count) return mpm_fail(f, MPM_ERR_ARGUMENT, "shape (holds no point at spacing)", d->spacing, -1);
-    b->first = p->count;
-    b->count = b->active = i - p->count;
-    b->point_mass = (mpm_real)(mass / b->count);
-    return MPM_OK;
-}
-
-/* A body added earlier may stick into the new one without the reverse. */
-static inline int32_t mpm__point_inside(const mpm_world *w, const mpm_shape *s)
-{
-    const mpm_points *p = &w->points;
-    int32_t b, i;
-    for (b = 0; b < w->bodies; b++)
-        for (i = w->body[b].first; i < w->body[b].first + w->body[b].active; i++) {
-            mpm_real x[3];
-            x[0] = p->x[0][i];
-            x[1] = p->x[1][i];
-            x[2] = p->x[2][i];
-            if (mpm__contains(s, x, mpm__flat(&w->desc), 0)) return b;
-        }
-    return -1;
-}
-
-MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *desc)
-{
-    mpm_body b;
-    mpm_status s;
-    int32_t other;
-    memset(&b, 0, sizeof b);
-    if ((s = mpm__body_check(w, desc, &w->fault)) != MPM_OK) return s;
-    if ((other = mpm__point_inside(w, &desc->shape)) >= 0)
-        return mpm_fail(&w->fault, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
-    b.desc = *desc;
-    mpm__areas(&w->desc, &b);
-    if ((s = mpm__fill(w, &b, &w->fault)) != MPM_OK) return s;
-    w->body[w->bodies++] = b;
-    w->points.count += b.count;
-    w->sorted_runs = 0;
-    /* Room for the nodes, with half as much again to spare; caller's memory cannot grow by itself. */
-    for (;;) {
-        s = mpm_locate(w);
-        if (s == MPM_OK && w->owns_work && w->nodes + w->nodes / 2 > w->node_capacity) s = MPM_ERR_FULL;
-        if (s != MPM_ERR_FULL || !w->owns_work) break;
-        if ((s = mpm_reserve(w, NULL, 0)) != MPM_OK) break;
-    }
-    if (s < 0) {
-        w->bodies--;
-        w->points.count -= b.count;
-    }
-    return s;
-}
-
-MPM_API mpm_real mpm_time_step(const mpm_world *w, mpm_real factor)
-{
-    mpm_real c = 0;
-    int32_t b;
-    for (b = 0; b < w->bodies; b++)
-        if (w->body[b].desc.wave_p > c) c = w->body[b].desc.wave_p;
-    return c > 0 ? factor * w->desc.cell / c : 0;
-}
-
-/* ---- locate: points in cell order, runs, slots ---------------------------------------------- */
-
-/* Puts point j's fields where point i's are, and the reverse. */
-static inline void mpm__swap_points(mpm_world *w, int32_t i, int32_t j)
-{
-    mpm_points *p = &w->points;
-    int32_t id = p->id[i], key = w->key[i];
-    uint8_t flags = p->flags[i];
-    int f;
-    for (f = 0; f < w->fields; f++) {
-        mpm_real *a = w->field + (size_t)f * w->stride, t = a[i];
-        a[i] = a[j];
-        a[j] = t;
-    }
-    p->id[i] = p->id[j];
-    p->id[j] = id;
-    p->flags[i] = p->flags[j];
-    p->flags[j] = flags;
-    w->key[i] = w->key[j];
-    w->key[j] = key;
-}
-
-/* The base node of every active point of a body, or -1 outside the grid. A point's base is the
-   lowest node it touches: of its cell with linear functions, of the nearest node's lower
-   neighbour with GIMP. */
-static inline void mpm__keys(mpm_world *w, const mpm_body *b)
-{
-    const mpm_desc *d = &w->desc;
-    const mpm_real *x = w->points.x[0], *y = w->points.x[1], *z = w->points.x[2];
-    const mpm_real inv = 1 / d->cell, shift = w->ghost ? MPM_R(0.5) : 0;
-    const mpm_real hx = (mpm_real)d->cells[0], hz = (mpm_real)d->cells[2];
-    const mpm_real ox = d->origin[0], oy = d->origin[1], oz = d->origin[2];
-    const int32_t nx = w->nodes_per_axis[0], ny = w->nodes_per_axis[1];
-    const int flat = mpm__flat(d);
-    const mpm_real hy = (mpm_real)d->cells[1];
-    int32_t i, *key = w->key;
-    for (i = b->first; i < b->first + b->active; i++) {
-        mpm_real tx = (x[i] - ox) * inv, ty = flat ? 0 : (y[i] - oy) * inv, tz = (z[i] - oz) * inv;
-        int inside = (tx >= 0) & (tx < hx) & (ty >= 0) & (ty < hy) & (tz >= 0) & (tz < hz);
-        /* with GIMP truncation of t + 1/2 gives the nearest node, whose lower neighbour is, with
-           the ghost layer counted, of the same number */
-        int32_t ix = (int32_t)(inside ? tx + shift : 0), iz = (int32_t)(inside ? tz + shift : 0);
-        int32_t iy = flat ? 0 : (int32_t)(inside ? ty + shift : 0);
-        key[i] = inside ? (iz * ny + iy) * nx + ix : -1;
-    }
-}
-
-/* Takes points with key -1 out of the active range, in order. A position that is not a number is
-   a failure, found before anything is moved. */
-static inline mpm_status mpm__retire(mpm_world *w, mpm_body *b)
-{
-    mpm_points *p = &w->points;
-    int32_t i;
-    int a;
-    for (i = b->first; i < b->first + b->active; i++)
-        for (a = 0; a < 3 && w->key[i] < 0; a++)
-            if (!mpm_finite(p->x[a][i]))
-                return mpm_fail(&w->fault, MPM_ERR_NAN, "position of point", p->x[a][i], i);
-    for (i = b->first; i < b->first + b->active; i++)
-        while (w->key[i] < 0 && i < b->first + b->active) {
-            mpm__swap_points(w, i, b->first + b->active - 1);
-            b->active--;
-            w->retired++;
-        }
-    return MPM_OK;
-}
-
-/* Counting sort of a body's points by base node. The table of nodes, unused between steps, holds
-   the counts; stable, hence deterministic. */
-static inline void mpm__sort(mpm_world *w, const mpm_body *b)
-{
-    mpm_points *p = &w->points;
-    int32_t i, lo, hi, sum = b->first, *head = w->head, *order = w->order, *spare = (int32_t *)w->scratch;
-    const int32_t from = b->first, to = b->first + b->active;
-    int f;
-    if (from == to) return;
-    lo = hi = w->key[from];
-    for (i = from; i < to; i++) {
-        if (w->key[i] < lo) lo = w->key[i];
-        if (w->key[i] > hi) hi = w->key[i];
-    }
-    for (i = lo; i <= hi; i++) head[i] = 0;
-    for (i = from; i < to; i++) head[w->key[i]]++;
-    for (i = lo; i <= hi; i++) {
-        int32_t n = head[i];
-        head[i] = sum;
-        sum += n;
-    }
-    for (i = from; i < to; i++) order[head[w->key[i]]++] = i;
-    for (i = lo; i <= hi; i++) head[i] = -1;
-    for (f = 0; f < w->fields; f++) {
-        mpm_real *a = w->field + (size_t)f * w->stride;
-        for (i = from; i < to; i++) w->scratch[i] = a[order[i]];
-        memcpy(a + from, w->scratch + from, (size_t)(to - from) * sizeof *a);
-    }
-    for (i = from; i < to; i++) spare[i] = p->id[order[i]];
-    memcpy(p->id + from, spare + from, (size_t)(to - from) * sizeof *spare);
-    for (i = from; i < to; i++) spare[i] = w->key[order[i]];
-    memcpy(w->key + from, spare + from, (size_t)(to - from) * sizeof *spare);
-    for (i = from; i < to; i++) spare[i] = p->flags[order[i]];
-    for (i = from; i < to; i++) p->flags[i] = (uint8_t)spare[i];
-}
-
-/* Runs there would be with the points as they lie. */
-static inline int32_t mpm__count_runs(const mpm_world *w)
-{
-    int32_t b, i, n = 0;
-    for (b = 0; b < w->bodies; b++) {
-        const int32_t from = w->body[b].first, to = from + w->body[b].active;
-        if (to > from) n++;
-        for (i = from + 1; i < to; i++) n += w->key[i] != w->key[i - 1];
-    }
-    return n;
-}
-
-/* The slot of a body at a node, made if there is none; -1 if there is no room. */
-static inline int32_t mpm__slot(mpm_world *w, int32_t body, const int32_t *at)
-{
-    const int32_t *n = w->nodes_per_axis;
-    const int32_t index = (at[2] * n[1] + at[1]) * n[0] + at[0];
-    int32_t s, others = 0, sides = 0;
-    mpm_node *node;
-    int d;
-    for (s = w->head[index]; s >= 0; s = w->node[s].next, others++)
-        if (w->node[s].body == body) return s;
-    if (w->nodes == w->node_capacity) return -1;
-    w->pairs_possible += others;
-    s = w->nodes++;
-    node = &w->node[s];
-    memset(node, 0, sizeof *node);
-    for (d = 0; d < 3; d++) {
-        if (d == 1 && mpm__flat(&w->desc)) continue;
-        if (at[d] <= w->ghost && w->desc.side[2 * d]) sides |= 1 << (2 * d);
-        if (at[d] >= n[d] - 1 - w->ghost && w->desc.side[2 * d + 1]) sides |= 1 << (2 * d + 1);
-    }
-    node->index = index;
-    node->body = body;
-    node->flags = sides;
-    node->next = w->head[index];
-    w->head[index] = s;
-    return s;
-}
-
-/* Gives a run its slots. Beyond a symmetry plane there are no nodes: what points lend to a ghost
-   there belongs, mirrored, to the node on this side. */
-static inline int mpm__run_slots(mpm_world *w, mpm_run *r, int32_t *slot)
-{
-    const int *n = w->support;
-    int32_t at[3];
-    int i[3], d, mirrored[3][3];
-    for (d = 0; d < 3; d++) {
-        int last = w->nodes_per_axis[d] - 1 - w->ghost;
-        for (i[0] = 0; i[0] < n[d]; i[0]++) {
-            int g = r->base[d] + i[0];
-            if (g < w->ghost && w->desc.side[2 * d] == MPM_SIDE_SYMMETRY) {
-                g = 2 * w->ghost - g;
-                r->flags |= 1 << d;
-            } else if (g > last && w->desc.side[2 * d + 1] == MPM_SIDE_SYMMETRY) {
-                g = 2 * last - g;
-                r->flags |= 8 << d;
-            }
-            mirrored[d][i[0]] = g;
-        }
-    }
-    for (i[2] = 0; i[2] < n[2]; i[2]++)
-        for (i[1] = 0; i[1] < n[1]; i[1]++)
-            for (i[0] = 0; i[0] < n[0]; i[0]++) {
-                for (d = 0; d < 3; d++) at[d] = mirrored[d][i[d]];
-                if ((*slot++ = mpm__slot(w, r->body, at)) < 0) return 0;
-            }
-    return 1;
-}
-
-MPM_API mpm_status mpm_locate(mpm_world *w)
-{
-    const int32_t nx = w->nodes_per_axis[0], ny = w->nodes_per_axis[1];
-    const int reach = w->support[0] * w->support[1] * w->support[2];
-    int32_t b, i, runs;
-    long retired = w->retired;
-    mpm_status s;
-    mpm__grid_reset(w);
-    for (b = 0; b < w->bodies; b++) {
-        mpm__keys(w, &w->body[b]);
-        if ((s = mpm__retire(w, &w->body[b])) != MPM_OK) return s;
-    }
-    runs = mpm__count_runs(w);
-    if (runs > w->sorted_runs + w->sorted_runs / 4) {
-        for (b = 0; b < w->bodies; b++) mpm__sort(w, &w->body[b]);
-        runs = w->sorted_runs = mpm__count_runs(w);
-        w->sorts++;
-    }
-    for (b = 0; b < w->bodies; b++) {
-        const int32_t to = w->body[b].first + w->body[b].active;
-        for (i = w->body[b].first; i < to;) {
-            mpm_run *r = &w->run[w->runs];
-            const int32_t key = w->key[i];
-            if (w->runs == w->run_capacity) goto full;
-            r->first = i;
-            while (++i < to && w->key[i] == key) {}
-            r->count = i - r->first;
-            r->base[0] = key % nx;
-            r->base[1] = key / nx % ny;
-            r->base[2] = key / nx / ny;
-            r->body = b;
-            r->flags = 0;
-            if (!mpm__run_slots(w, r, w->slot + (size_t)w->runs * (size_t)reach)) goto full;
-            w->runs++;
-        }
-    }
-    if (w->pairs_possible <= w->pair_capacity) return w->retired > retired ? MPM_RETIRED : MPM_OK;
-full:
-    i = w->pairs_possible;
-    mpm__grid_reset(w);
-    w->pairs_possible = i;
-    return mpm_fail(&w->fault, MPM_ERR_FULL, "nodes", (mpm_real)w->node_capacity, -1);
-}
 
 /* ---- shape functions and the sweep over a run ------------------------------------------------ */
 
@@ -1801,7 +935,7 @@ static inline void mpm__walls(mpm_world *w, mpm_node *n, mpm_real dt)
     }
 }
 
-/* ---- the phases ------------------------------------------------------------------------------ */
+/* ---- to the nodes ------------------------------------------------------------------------- */
 
 MPM__KERNEL void mpm__p2g_run(mpm_world *w, const mpm_run *r, int k, int ky, int musl)
 {
@@ -2559,20 +1693,229 @@ MPM_API void mpm_move(mpm_world *w, mpm_real dt)
     w->steps++;
 }
 
-MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt)
+/* ---- locate: points in cell order, runs, slots ---------------------------------------------- */
+
+/* Forgets all slots: the table of nodes is empty again. */
+static inline void mpm__grid_reset(mpm_world *w)
 {
-    mpm_status s = mpm_locate(w);
-    if (s < 0) return s;
-    mpm_p2g(w);
-    mpm_forces(w, dt);
-    mpm_grid_update(w, dt);
-    mpm_contact_find(w);
-    mpm_contact_apply(w, dt);
-    mpm_g2p(w, dt);
-    mpm_musl(w, dt);
-    if (mpm_stress(w, dt) < 0) return w->fault.status;
-    mpm_move(w, dt);
+    int32_t s;
+    for (s = 0; s < w->nodes; s++) w->head[w->node[s].index] = -1;
+    w->nodes = w->runs = w->pairs = w->pairs_possible = 0;
+}
+
+/* Puts point j's fields where point i's are, and the reverse. */
+static inline void mpm__swap_points(mpm_world *w, int32_t i, int32_t j)
+{
+    mpm_points *p = &w->points;
+    int32_t id = p->id[i], key = w->key[i];
+    uint8_t flags = p->flags[i];
+    int f;
+    for (f = 0; f < w->fields; f++) {
+        mpm_real *a = w->field + (size_t)f * w->stride, t = a[i];
+        a[i] = a[j];
+        a[j] = t;
+    }
+    p->id[i] = p->id[j];
+    p->id[j] = id;
+    p->flags[i] = p->flags[j];
+    p->flags[j] = flags;
+    w->key[i] = w->key[j];
+    w->key[j] = key;
+}
+
+/* The base node of every active point of a body, or -1 outside the grid. A point's base is the
+   lowest node it touches: of its cell with linear functions, of the nearest node's lower
+   neighbour with GIMP. */
+static inline void mpm__keys(mpm_world *w, const mpm_body *b)
+{
+    const mpm_desc *d = &w->desc;
+    const mpm_real *x = w->points.x[0], *y = w->points.x[1], *z = w->points.x[2];
+    const mpm_real inv = 1 / d->cell, shift = w->ghost ? MPM_R(0.5) : 0;
+    const mpm_real hx = (mpm_real)d->cells[0], hz = (mpm_real)d->cells[2];
+    const mpm_real ox = d->origin[0], oy = d->origin[1], oz = d->origin[2];
+    const int32_t nx = w->nodes_per_axis[0], ny = w->nodes_per_axis[1];
+    const int flat = mpm__flat(d);
+    const mpm_real hy = (mpm_real)d->cells[1];
+    int32_t i, *key = w->key;
+    for (i = b->first; i < b->first + b->active; i++) {
+        mpm_real tx = (x[i] - ox) * inv, ty = flat ? 0 : (y[i] - oy) * inv, tz = (z[i] - oz) * inv;
+        int inside = (tx >= 0) & (tx < hx) & (ty >= 0) & (ty < hy) & (tz >= 0) & (tz < hz);
+        /* with GIMP truncation of t + 1/2 gives the nearest node, whose lower neighbour is, with
+           the ghost layer counted, of the same number */
+        int32_t ix = (int32_t)(inside ? tx + shift : 0), iz = (int32_t)(inside ? tz + shift : 0);
+        int32_t iy = flat ? 0 : (int32_t)(inside ? ty + shift : 0);
+        key[i] = inside ? (iz * ny + iy) * nx + ix : -1;
+    }
+}
+
+/* Takes points with key -1 out of the active range, in order. A position that is not a number is
+   a failure, found before anything is moved. */
+static inline mpm_status mpm__retire(mpm_world *w, mpm_body *b)
+{
+    mpm_points *p = &w->points;
+    int32_t i;
+    int a;
+    for (i = b->first; i < b->first + b->active; i++)
+        for (a = 0; a < 3 && w->key[i] < 0; a++)
+            if (!mpm_finite(p->x[a][i]))
+                return mpm_fail(&w->fault, MPM_ERR_NAN, "position of point", p->x[a][i], i);
+    for (i = b->first; i < b->first + b->active; i++)
+        while (w->key[i] < 0 && i < b->first + b->active) {
+            mpm__swap_points(w, i, b->first + b->active - 1);
+            b->active--;
+            w->retired++;
+        }
+    return MPM_OK;
+}
+
+/* Counting sort of a body's points by base node. The table of nodes, unused between steps, holds
+   the counts; stable, hence deterministic. */
+static inline void mpm__sort(mpm_world *w, const mpm_body *b)
+{
+    mpm_points *p = &w->points;
+    int32_t i, lo, hi, sum = b->first, *head = w->head, *order = w->order, *spare = (int32_t *)w->scratch;
+    const int32_t from = b->first, to = b->first + b->active;
+    int f;
+    if (from == to) return;
+    lo = hi = w->key[from];
+    for (i = from; i < to; i++) {
+        if (w->key[i] < lo) lo = w->key[i];
+        if (w->key[i] > hi) hi = w->key[i];
+    }
+    for (i = lo; i <= hi; i++) head[i] = 0;
+    for (i = from; i < to; i++) head[w->key[i]]++;
+    for (i = lo; i <= hi; i++) {
+        int32_t n = head[i];
+        head[i] = sum;
+        sum += n;
+    }
+    for (i = from; i < to; i++) order[head[w->key[i]]++] = i;
+    for (i = lo; i <= hi; i++) head[i] = -1;
+    for (f = 0; f < w->fields; f++) {
+        mpm_real *a = w->field + (size_t)f * w->stride;
+        for (i = from; i < to; i++) w->scratch[i] = a[order[i]];
+        memcpy(a + from, w->scratch + from, (size_t)(to - from) * sizeof *a);
+    }
+    for (i = from; i < to; i++) spare[i] = p->id[order[i]];
+    memcpy(p->id + from, spare + from, (size_t)(to - from) * sizeof *spare);
+    for (i = from; i < to; i++) spare[i] = w->key[order[i]];
+    memcpy(w->key + from, spare + from, (size_t)(to - from) * sizeof *spare);
+    for (i = from; i < to; i++) spare[i] = p->flags[order[i]];
+    for (i = from; i < to; i++) p->flags[i] = (uint8_t)spare[i];
+}
+
+/* Runs there would be with the points as they lie. */
+static inline int32_t mpm__count_runs(const mpm_world *w)
+{
+    int32_t b, i, n = 0;
+    for (b = 0; b < w->bodies; b++) {
+        const int32_t from = w->body[b].first, to = from + w->body[b].active;
+        if (to > from) n++;
+        for (i = from + 1; i < to; i++) n += w->key[i] != w->key[i - 1];
+    }
+    return n;
+}
+
+/* The slot of a body at a node, made if there is none; -1 if there is no room. */
+static inline int32_t mpm__slot(mpm_world *w, int32_t body, const int32_t *at)
+{
+    const int32_t *n = w->nodes_per_axis;
+    const int32_t index = (at[2] * n[1] + at[1]) * n[0] + at[0];
+    int32_t s, others = 0, sides = 0;
+    mpm_node *node;
+    int d;
+    for (s = w->head[index]; s >= 0; s = w->node[s].next, others++)
+        if (w->node[s].body == body) return s;
+    if (w->nodes == w->node_capacity) return -1;
+    w->pairs_possible += others;
+    s = w->nodes++;
+    node = &w->node[s];
+    memset(node, 0, sizeof *node);
+    for (d = 0; d < 3; d++) {
+        if (d == 1 && mpm__flat(&w->desc)) continue;
+        if (at[d] <= w->ghost && w->desc.side[2 * d]) sides |= 1 << (2 * d);
+        if (at[d] >= n[d] - 1 - w->ghost && w->desc.side[2 * d + 1]) sides |= 1 << (2 * d + 1);
+    }
+    node->index = index;
+    node->body = body;
+    node->flags = sides;
+    node->next = w->head[index];
+    w->head[index] = s;
     return s;
+}
+
+/* Gives a run its slots. Beyond a symmetry plane there are no nodes: what points lend to a ghost
+   there belongs, mirrored, to the node on this side. */
+static inline int mpm__run_slots(mpm_world *w, mpm_run *r, int32_t *slot)
+{
+    const int *n = w->support;
+    int32_t at[3];
+    int i[3], d, mirrored[3][3];
+    for (d = 0; d < 3; d++) {
+        int last = w->nodes_per_axis[d] - 1 - w->ghost;
+        for (i[0] = 0; i[0] < n[d]; i[0]++) {
+            int g = r->base[d] + i[0];
+            if (g < w->ghost && w->desc.side[2 * d] == MPM_SIDE_SYMMETRY) {
+                g = 2 * w->ghost - g;
+                r->flags |= 1 << d;
+            } else if (g > last && w->desc.side[2 * d + 1] == MPM_SIDE_SYMMETRY) {
+                g = 2 * last - g;
+                r->flags |= 8 << d;
+            }
+            mirrored[d][i[0]] = g;
+        }
+    }
+    for (i[2] = 0; i[2] < n[2]; i[2]++)
+        for (i[1] = 0; i[1] < n[1]; i[1]++)
+            for (i[0] = 0; i[0] < n[0]; i[0]++) {
+                for (d = 0; d < 3; d++) at[d] = mirrored[d][i[d]];
+                if ((*slot++ = mpm__slot(w, r->body, at)) < 0) return 0;
+            }
+    return 1;
+}
+
+MPM_API mpm_status mpm_locate(mpm_world *w)
+{
+    const int32_t nx = w->nodes_per_axis[0], ny = w->nodes_per_axis[1];
+    const int reach = w->support[0] * w->support[1] * w->support[2];
+    int32_t b, i, runs;
+    long retired = w->retired;
+    mpm_status s;
+    mpm__grid_reset(w);
+    for (b = 0; b < w->bodies; b++) {
+        mpm__keys(w, &w->body[b]);
+        if ((s = mpm__retire(w, &w->body[b])) != MPM_OK) return s;
+    }
+    runs = mpm__count_runs(w);
+    if (runs > w->sorted_runs + w->sorted_runs / 4) {
+        for (b = 0; b < w->bodies; b++) mpm__sort(w, &w->body[b]);
+        runs = w->sorted_runs = mpm__count_runs(w);
+        w->sorts++;
+    }
+    for (b = 0; b < w->bodies; b++) {
+        const int32_t to = w->body[b].first + w->body[b].active;
+        for (i = w->body[b].first; i < to;) {
+            mpm_run *r = &w->run[w->runs];
+            const int32_t key = w->key[i];
+            if (w->runs == w->run_capacity) goto full;
+            r->first = i;
+            while (++i < to && w->key[i] == key) {}
+            r->count = i - r->first;
+            r->base[0] = key % nx;
+            r->base[1] = key / nx % ny;
+            r->base[2] = key / nx / ny;
+            r->body = b;
+            r->flags = 0;
+            if (!mpm__run_slots(w, r, w->slot + (size_t)w->runs * (size_t)reach)) goto full;
+            w->runs++;
+        }
+    }
+    if (w->pairs_possible <= w->pair_capacity) return w->retired > retired ? MPM_RETIRED : MPM_OK;
+full:
+    i = w->pairs_possible;
+    mpm__grid_reset(w);
+    w->pairs_possible = i;
+    return mpm_fail(&w->fault, MPM_ERR_FULL, "nodes", (mpm_real)w->node_capacity, -1);
 }
 
 /* ---- looking at it --------------------------------------------------------------------------- */
@@ -2629,6 +1972,665 @@ MPM_API mpm_totals mpm_body_totals(const mpm_world *w, int32_t body)
         t.plastic_work_mean = (t.plastic_work_mean + rest[7]) / t.mass;
     }
     return t;
+}
+
+/* ---- small tools --------------------------------------------------------------------------- */
+
+MPM_API const char *mpm_version(void) { return MPM_VERSION; }
+
+MPM_API const char *mpm_status_text(mpm_status s)
+{
+    switch (s) {
+#define MPM__STATUS_TEXT(name, number, text) \
+    case name: return text;
+        MPM_STATUS_LIST(MPM__STATUS_TEXT)
+#undef MPM__STATUS_TEXT
+    default: return "unknown status";
+    }
+}
+
+static inline mpm_units mpm__units(double length, double mass, double time)
+{
+    mpm_units u;
+    u.length = length;
+    u.mass = mass;
+    u.time = time;
+    return u;
+}
+
+MPM_API mpm_units mpm_units_si(void) { return mpm__units(1, 1, 1); }
+MPM_API mpm_units mpm_units_um_us_ng(void) { return mpm__units(1e-6, 1e-12, 1e-6); }
+MPM_API mpm_units mpm_units_mm_ms_g(void) { return mpm__units(1e-3, 1e-3, 1e-3); }
+
+MPM_API double mpm_units_velocity(const mpm_units *u) { return u->length / u->time; }
+MPM_API double mpm_units_density(const mpm_units *u) { return u->mass / (u->length * u->length * u->length); }
+MPM_API double mpm_units_stress(const mpm_units *u) { return u->mass / (u->length * u->time * u->time); }
+MPM_API double mpm_units_energy(const mpm_units *u)
+{
+    return u->mass * u->length * u->length / (u->time * u->time);
+}
+MPM_API double mpm_units_specific_energy(const mpm_units *u)
+{
+    return u->length * u->length / (u->time * u->time);
+}
+MPM_API double mpm_units_area_energy(const mpm_units *u) { return u->mass / (u->time * u->time); }
+
+MPM_API mpm_real mpm_wave_speed_p(mpm_real young, mpm_real poisson, mpm_real density)
+{
+    return mpm_sqrt(young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson) * density));
+}
+
+MPM_API mpm_real mpm_wave_speed_s(mpm_real young, mpm_real poisson, mpm_real density)
+{
+    return mpm_sqrt(young / (2 * (1 + poisson) * density));
+}
+
+/* ---- memory -------------------------------------------------------------------------------- */
+
+#define MPM__NAMED_FIELDS 20 /* x v mass density stress energy temperature plastic_* bond */
+
+static inline void mpm__grid_sizes(mpm_world *w)
+{
+    int a;
+    w->ghost = w->desc.basis == MPM_GIMP ? 1 : 0;
+    for (a = 0; a < 3; a++) {
+        w->support[a] = w->ghost ? 3 : 2;
+        w->nodes_per_axis[a] = w->desc.cells[a] + 1 + 2 * w->ghost;
+    }
+    if (mpm__flat(&w->desc)) {
+        w->support[1] = 1;
+        w->nodes_per_axis[1] = 1;
+    }
+}
+
+static inline size_t mpm__grid_nodes(const mpm_world *w)
+{
+    return (size_t)w->nodes_per_axis[0] * (size_t)w->nodes_per_axis[1] * (size_t)w->nodes_per_axis[2];
+}
+
+/* Lays out the first block: points and the grid table. Returns its size. Field strides are an odd
+   number of cache lines, so that fields of one point do not compete for the same cache set. */
+static inline size_t mpm__layout_points(mpm_world *w, char *base)
+{
+    mpm_points *p = &w->points;
+    size_t used = 0, n = (size_t)w->desc.points, lines = (n * sizeof(mpm_real) + MPM_ALIGN - 1) / MPM_ALIGN;
+    mpm_real *f;
+    int i;
+    w->fields = MPM__NAMED_FIELDS + w->desc.user_fields;
+    w->stride = (lines | 1) * (MPM_ALIGN / sizeof(mpm_real));
+    w->body = (mpm_body *)mpm_carve(base, &used, (size_t)w->desc.bodies, sizeof(mpm_body));
+    w->field = (mpm_real *)mpm_carve(base, &used, mpm_size_mul(w->stride, (size_t)w->fields), sizeof(mpm_real));
+    w->scratch = (mpm_real *)mpm_carve(base, &used, w->stride, sizeof(mpm_real));
+    p->id = (int32_t *)mpm_carve(base, &used, n, sizeof(int32_t));
+    p->flags = (uint8_t *)mpm_carve(base, &used, n, 1);
+    w->key = (int32_t *)mpm_carve(base, &used, n, sizeof(int32_t));
+    w->order = (int32_t *)mpm_carve(base, &used, n, sizeof(int32_t));
+    w->head = (int32_t *)mpm_carve(base, &used, mpm__grid_nodes(w), sizeof(int32_t));
+    if (!base) return used;
+    f = w->field;
+    for (i = 0; i < 3; i++) p->x[i] = f + (size_t)i * w->stride;
+    for (i = 0; i < 3; i++) p->v[i] = f + (size_t)(3 + i) * w->stride;
+    for (i = 0; i < 6; i++) p->stress[i] = f + (size_t)(6 + i) * w->stride;
+    p->mass = f + 12 * w->stride;
+    p->density = f + 13 * w->stride;
+    p->energy = f + 14 * w->stride;
+    p->temperature = f + 15 * w->stride;
+    p->plastic_strain = f + 16 * w->stride;
+    p->plastic_rate = f + 17 * w->stride;
+    p->plastic_work = f + 18 * w->stride;
+    p->bond = f + 19 * w->stride;
+    for (i = 0; i < w->desc.user_fields; i++) p->user[i] = f + (size_t)(MPM__NAMED_FIELDS + i) * w->stride;
+    return used;
+}
+
+/* Lays out the second block for a number of slots: there are as many runs as slots. */
+static inline size_t mpm__layout_work(mpm_world *w, char *base, int32_t nodes)
+{
+    size_t used = 0, n = (size_t)nodes;
+    size_t reach = (size_t)w->support[0] * (size_t)w->support[1] * (size_t)w->support[2];
+    w->node_capacity = w->run_capacity = w->pair_capacity = nodes;
+    w->node = (mpm_node *)mpm_carve(base, &used, n, sizeof(mpm_node));
+    w->run = (mpm_run *)mpm_carve(base, &used, n, sizeof(mpm_run));
+    w->slot = (int32_t *)mpm_carve(base, &used, mpm_size_mul(n, reach), sizeof(int32_t));
+    w->pair = (mpm_pair *)mpm_carve(base, &used, n, sizeof(mpm_pair));
+    if (w->desc.normal == MPM_NORMAL_LOGISTIC)
+        w->plane = (mpm_plane *)mpm_carve(base, &used, n, sizeof(mpm_plane));
+    return used;
+}
+
+/* A first guess of the slots needed; mpm_body_add corrects it where it may. */
+static inline int32_t mpm__guess_nodes(const mpm_desc *d)
+{
+    return d->nodes ? d->nodes : d->points / 10 + 256;
+}
+
+MPM_API size_t mpm_bytes(const mpm_desc *d)
+{
+    mpm_world w;
+    size_t n;
+    if (mpm_desc_check(d, NULL) != MPM_OK) return 0;
+    memset(&w, 0, sizeof w);
+    w.desc = *d;
+    mpm__grid_sizes(&w);
+    n = mpm__layout_points(&w, NULL);
+    if (n > (size_t)-1 - MPM_ALIGN) return 0;
+    n = mpm_size_add((n + MPM_ALIGN) / MPM_ALIGN * MPM_ALIGN, mpm__layout_work(&w, NULL, mpm__guess_nodes(d)));
+    return n == (size_t)-1 ? 0 : n;
+}
+
+MPM_API size_t mpm_bytes_used(const mpm_world *w) { return w->memory_bytes + w->work_bytes; }
+
+MPM_API mpm_status mpm_init(mpm_world *w, const mpm_desc *d, void *memory, size_t bytes)
+{
+    size_t points, work, i, nodes;
+    mpm_status s;
+    memset(w, 0, sizeof *w);
+    w->fault.index = -1;
+    if ((s = mpm_desc_check(d, &w->fault)) != MPM_OK) return s;
+    w->desc = *d;
+    if (mpm__flat(d)) {
+        w->desc.cells[1] = 1;
+        w->desc.side[2] = w->desc.side[3] = MPM_SIDE_OPEN;
+    }
+    mpm__grid_sizes(w);
+    points = mpm_size_add(mpm__layout_points(w, NULL), MPM_ALIGN) / MPM_ALIGN * MPM_ALIGN;
+    work = mpm__layout_work(w, NULL, mpm__guess_nodes(d));
+    if (mpm_size_add(points, work) == (size_t)-1)
+        return mpm_fail(&w->fault, MPM_ERR_MEMORY, "points", (mpm_real)d->points, -1);
+    if (memory) {
+        if (bytes < points + work)
+            return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
+        w->memory = memory;
+        w->work = (char *)memory + points;
+    } else {
+        w->memory = MPM_MALLOC(points);
+        w->work = w->memory ? MPM_MALLOC(work) : NULL;
+        w->owns_memory = w->owns_work = 1;
+        if (!w->work) {
+            mpm_free(w);
+            return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)(points + work), -1);
+        }
+    }
+    w->memory_bytes = points;
+    w->work_bytes = work;
+    memset(w->memory, 0, points);
+    mpm__layout_points(w, (char *)w->memory);
+    mpm__layout_work(w, (char *)w->work, mpm__guess_nodes(d));
+    w->points.capacity = d->points;
+    for (i = 0, nodes = mpm__grid_nodes(w); i < nodes; i++) w->head[i] = -1;
+    return MPM_OK;
+}
+
+MPM_API void mpm_free(mpm_world *w)
+{
+    if (w->owns_memory && w->memory) MPM_FREE(w->memory);
+    if (w->owns_work && w->work) MPM_FREE(w->work);
+    w->memory = w->work = NULL;
+    w->owns_memory = w->owns_work = 0;
+    w->points.count = 0;
+    w->bodies = 0;
+}
+
+static inline int32_t mpm__grown(const mpm_world *w)
+{
+    int32_t need = w->pairs_possible > w->node_capacity ? w->pairs_possible : w->node_capacity;
+    return need > 1000000000 ? 2000000000 : 2 * need;
+}
+
+MPM_API size_t mpm_reserve_bytes(const mpm_world *w)
+{
+    mpm_world copy = *w;
+    return mpm__layout_work(&copy, NULL, mpm__grown(w));
+}
+
+MPM_API mpm_status mpm_reserve(mpm_world *w, void *memory, size_t bytes)
+{
+    const int32_t nodes = mpm__grown(w);
+    size_t need = mpm_reserve_bytes(w);
+    void *block = memory ? memory : MPM_MALLOC(need);
+    if (!block || (memory && bytes < need))
+        return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)need, -1);
+    mpm__grid_reset(w);
+    if (w->owns_work) MPM_FREE(w->work);
+    w->work = block;
+    w->work_bytes = need;
+    w->owns_work = memory == NULL;
+    mpm__layout_work(w, (char *)block, nodes);
+    return MPM_OK;
+}
+
+/* ---- shapes -------------------------------------------------------------------------------- */
+
+static inline mpm_shape mpm__shape(mpm_shape_kind kind, const mpm_real *low, const mpm_real *high)
+{
+    mpm_shape s;
+    int d;
+    s.kind = kind;
+    for (d = 0; d < 3; d++) {
+        s.center[d] = (low[d] + high[d]) / 2;
+        s.half[d] = (high[d] - low[d]) / 2;
+    }
+    return s;
+}
+
+MPM_API mpm_shape mpm_ellipsoid(mpm_real x, mpm_real y, mpm_real z, mpm_real a, mpm_real b, mpm_real c)
+{
+    mpm_shape s;
+    s.kind = MPM_SHAPE_ELLIPSOID;
+    s.center[0] = x;
+    s.center[1] = y;
+    s.center[2] = z;
+    s.half[0] = a;
+    s.half[1] = b;
+    s.half[2] = c;
+    return s;
+}
+
+MPM_API mpm_shape mpm_sphere(mpm_real x, mpm_real y, mpm_real z, mpm_real radius)
+{
+    return mpm_ellipsoid(x, y, z, radius, radius, radius);
+}
+
+MPM_API mpm_shape mpm_cylinder(mpm_real x, mpm_real y, mpm_real z_bottom, mpm_real radius, mpm_real height)
+{
+    mpm_real low[3], high[3];
+    low[0] = x - radius;
+    low[1] = y - radius;
+    low[2] = z_bottom;
+    high[0] = x + radius;
+    high[1] = y + radius;
+    high[2] = z_bottom + height;
+    return mpm__shape(MPM_SHAPE_CYLINDER, low, high);
+}
+
+MPM_API mpm_shape mpm_box(mpm_real x0, mpm_real y0, mpm_real z0, mpm_real x1, mpm_real y1, mpm_real z1)
+{
+    mpm_real low[3], high[3];
+    low[0] = x0;
+    low[1] = y0;
+    low[2] = z0;
+    high[0] = x1;
+    high[1] = y1;
+    high[2] = z1;
+    return mpm__shape(MPM_SHAPE_BOX, low, high);
+}
+
+/* The section of s in the plane of a two-dimensional problem: y no longer matters. */
+static inline int mpm__contains(const mpm_shape *s, const mpm_real *x, int flat, mpm_real shrink)
+{
+    mpm_real q[3];
+    int d;
+    for (d = 0; d < 3; d++) {
+        mpm_real half = s->half[d] - shrink;
+        if (half <= 0) return 0;
+        q[d] = (d == 1 && flat) ? 0 : (x[d] - s->center[d]) / half;
+    }
+    switch (s->kind) {
+    case MPM_SHAPE_ELLIPSOID: return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] <= 1;
+    case MPM_SHAPE_CYLINDER: return q[0] * q[0] + q[1] * q[1] <= 1 && q[2] >= -1 && q[2] <= 1;
+    case MPM_SHAPE_BOX: return q[0] >= -1 && q[0] <= 1 && q[1] >= -1 && q[1] <= 1 && q[2] >= -1 && q[2] <= 1;
+    default: return 0;
+    }
+}
+
+MPM_API int mpm_shape_contains(const mpm_shape *s, mpm_real x, mpm_real y, mpm_real z)
+{
+    mpm_real q[3];
+    q[0] = x;
+    q[1] = y;
+    q[2] = z;
+    return mpm__contains(s, q, 0, 0);
+}
+
+static inline mpm_real mpm__grid_high(const mpm_desc *d, int axis)
+{
+    return d->origin[axis] + (mpm_real)d->cells[axis] * d->cell;
+}
+
+/* A walk over the lattice points of a shape, in order of z, y, x. The lattice is symmetric about
+   the centre; a cylinder's or box's last layer lies half a spacing below its upper face. */
+typedef struct mpm__lattice {
+    int32_t n[3], i[3];
+    mpm_real start[3], spacing;
+} mpm__lattice;
+
+static inline mpm__lattice mpm__lattice_begin(const mpm_desc *d, const mpm_shape *s, mpm_real spacing)
+{
+    mpm__lattice l;
+    int a;
+    l.spacing = spacing;
+    for (a = 0; a < 3; a++) {
+        mpm_real across = s->half[a] / spacing;
+        if (s->kind == MPM_SHAPE_BOX || (s->kind == MPM_SHAPE_CYLINDER && a == 2))
+            l.n[a] = (int32_t)(2 * across + MPM_R(0.5));
+        else
+            l.n[a] = 2 * (int32_t)(across + 1);
+        if (l.n[a] < 1) l.n[a] = 1;
+        l.start[a] = s->center[a] - MPM_R(0.5) * (mpm_real)(l.n[a] - 1) * spacing;
+        l.i[a] = 0;
+    }
+    if (s->kind != MPM_SHAPE_ELLIPSOID)
+        l.start[2] = s->center[2] + s->half[2] - ((mpm_real)l.n[2] - MPM_R(0.5)) * spacing;
+    if (mpm__flat(d)) {
+        l.n[1] = 1;
+        l.start[1] = 0;
+    }
+    l.i[0] = -1;
+    return l;
+}
+
+/* The next lattice point that belongs to the shape and is not cut off by a symmetry plane. */
+static inline int mpm__lattice_next(mpm__lattice *l, const mpm_desc *d, const mpm_shape *s, mpm_real *x)
+{
+    for (;;) {
+        int a, cut = 0;
+        for (a = 0; ++l->i[a] == l->n[a]; a++) {
+            if (a == 2) return 0;
+            l->i[a] = 0;
+        }
+        for (a = 0; a < 3; a++) {
+            x[a] = l->start[a] + (mpm_real)l->i[a] * l->spacing;
+            if (a == 1 && mpm__flat(d)) continue;
+            if (d->side[2 * a] == MPM_SIDE_SYMMETRY && x[a] < d->origin[a]) cut = 1;
+            if (d->side[2 * a + 1] == MPM_SIDE_SYMMETRY && x[a] > mpm__grid_high(d, a)) cut = 1;
+        }
+        if (cut) continue;
+        /* the lattice itself bounds boxes and the height of cylinders */
+        if (s->kind == MPM_SHAPE_BOX) return 1;
+        if (s->kind == MPM_SHAPE_CYLINDER) {
+            mpm_real q[3];
+            q[0] = x[0];
+            q[1] = x[1];
+            q[2] = s->center[2];
+            if (mpm__contains(s, q, mpm__flat(d), 0)) return 1;
+        } else if (mpm__contains(s, x, mpm__flat(d), 0)) {
+            return 1;
+        }
+    }
+}
+
+MPM_API int32_t mpm_shape_count(const mpm_desc *d, const mpm_shape *s, mpm_real spacing)
+{
+    mpm__lattice l;
+    mpm_real x[3];
+    int32_t n = 0;
+    int a;
+    if (!(spacing > 0)) return 0;
+    for (a = 0; a < 3; a++)
+        if (!(s->half[a] > 0 && s->half[a] / spacing < 1e6)) return 0;
+    l = mpm__lattice_begin(d, s, spacing);
+    if ((double)l.n[0] * l.n[1] * l.n[2] > 2147483647.0) return 0;
+    while (mpm__lattice_next(&l, d, s, x)) n++;
+    return n;
+}
+
+/* ---- bodies -------------------------------------------------------------------------------- */
+
+static inline mpm_status mpm__body_check(const mpm_world *w, const mpm_body_desc *b, mpm_fault *f)
+{
+    const mpm_shape *s = &b->shape;
+    mpm_status st;
+    int a;
+    if (w->bodies >= w->desc.bodies)
+        return mpm_fail(f, MPM_ERR_FULL, "bodies", (mpm_real)w->desc.bodies, w->bodies);
+    st = mpm_want(s->kind > MPM_SHAPE_NONE && s->kind <= MPM_SHAPE_BOX, f, "shape", (mpm_real)s->kind, -1);
+    if (st != MPM_OK) return st;
+    for (a = 0; a < 3; a++) {
+        if ((st = mpm_want(1, f, "shape.center", s->center[a], a)) != MPM_OK) return st;
+        if ((st = mpm_want(s->half[a] > 0, f, "shape.half", s->half[a], a)) != MPM_OK) return st;
+        if ((st = mpm_want(1, f, "velocity", b->velocity[a], a)) != MPM_OK) return st;
+    }
+    if ((st = mpm_want(b->spacing > 0, f, "spacing", b->spacing, -1)) != MPM_OK) return st;
+    if (b->spacing > w->desc.cell * (1 + 16 * MPM_EPSILON))
+        return mpm_fail(f, MPM_ERR_ARGUMENT, "spacing (larger than the cell)", b->spacing, -1);
+    if ((st = mpm_want(b->density > 0, f, "density", b->density, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->temperature >= 0, f, "temperature", b->temperature, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->wave_p >= 0, f, "wave_p", b->wave_p, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->wave_s >= 0, f, "wave_s", b->wave_s, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->absorb_normal >= 0, f, "absorb_normal", b->absorb_normal, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->absorb_shear >= 0, f, "absorb_shear", b->absorb_shear, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->shell >= 0, f, "shell", b->shell, -1)) != MPM_OK) return st;
+    return MPM_OK;
+}
+
+/* Where on its body a new point lies. Damped faces are cuts through a larger body, not surfaces. */
+static inline uint8_t mpm__flags(const mpm_body_desc *b, const mpm_real *x, int flat)
+{
+    const mpm_shape *s = &b->shape;
+    mpm_shape core = *s;
+    int f = 0, d;
+    if (s->kind != MPM_SHAPE_ELLIPSOID) {
+        mpm_shape wide = *s; /* the circumference alone: without upper and lower face */
+        if (x[2] > s->center[2] + s->half[2] - b->spacing) f |= MPM_FACE_TOP;
+        if (x[2] < s->center[2] - s->half[2] + b->spacing) f |= MPM_FACE_BOTTOM;
+        wide.half[2] *= 4;
+        if (!mpm__contains(&wide, x, flat, b->spacing)) f |= MPM_FACE_RIM;
+    }
+    if (b->absorb & MPM_FACE_BOTTOM) core.center[2] -= 2 * s->half[2], core.half[2] += 2 * s->half[2];
+    if (b->absorb & MPM_FACE_RIM)
+        for (d = 0; d < 2; d++) core.half[d] += 2 * b->shell * b->spacing + s->half[d];
+    if (!mpm__contains(&core, x, flat, b->shell * b->spacing * (1 - 64 * MPM_EPSILON))) f |= MPM_POINT_SURFACE;
+    return (uint8_t)f;
+}
+
+/* Mass that a lattice point stands for: a cube, a unit-depth square, or a ring. */
+static inline mpm_real mpm__point_mass(const mpm_desc *d, const mpm_body_desc *b, const mpm_real *x)
+{
+    mpm_real square = b->density * b->spacing * b->spacing;
+    if (d->geometry == MPM_3D) return square * b->spacing;
+    return d->geometry == MPM_AXISYMMETRIC ? 2 * MPM_PI * x[0] * square : square;
+}
+
+/* The share of a shape that the symmetry planes leave in the grid. */
+static inline mpm_real mpm__kept(const mpm_desc *d, const mpm_body_desc *b)
+{
+    mpm_desc open = *d;
+    int a;
+    for (a = 0; a < 6; a++) open.side[a] = MPM_SIDE_OPEN;
+    return (mpm_real)mpm_shape_count(d, &b->shape, b->spacing) /
+           (mpm_real)mpm_shape_count(&open, &b->shape, b->spacing);
+}
+
+/* The true areas of the damped faces, bottom and circumference (A 3.45, 3.46). */
+static inline void mpm__areas(const mpm_desc *d, mpm_body *b)
+{
+    const mpm_shape *s = &b->desc.shape;
+    mpm_real kept = mpm__kept(d, &b->desc), a = 2 * s->half[0], h = 2 * s->half[2];
+    if (d->geometry == MPM_PLANE_STRAIN) {
+        b->area[0] = a * kept;
+        b->area[1] = 2 * h * kept;
+    } else if (s->kind == MPM_SHAPE_BOX && d->geometry == MPM_3D) {
+        b->area[0] = a * 2 * s->half[1] * kept;
+        b->area[1] = 2 * (a + 2 * s->half[1]) * h * kept;
+    } else {
+        if (d->geometry == MPM_AXISYMMETRIC) kept = 1; /* rings are whole */
+        b->area[0] = MPM_PI * s->half[0] * s->half[0] * kept;
+        b->area[1] = 2 * MPM_PI * s->half[0] * h * kept;
+    }
+}
+
+/* The body whose shape contains x, or -1. */
+static inline int32_t mpm__body_at(const mpm_world *w, const mpm_real *x)
+{
+    int32_t b;
+    for (b = 0; b < w->bodies; b++)
+        if (mpm__contains(&w->body[b].desc.shape, x, mpm__flat(&w->desc), 0)) return b;
+    return -1;
+}
+
+/* The first axis along which x lies outside the grid, or -1. */
+static inline int mpm__axis_outside(const mpm_desc *d, const mpm_real *x)
+{
+    int a;
+    if (d->geometry == MPM_AXISYMMETRIC && !(x[0] > 0)) return 0; /* a ring without mass or radius */
+    for (a = 0; a < 3; a++) {
+        mpm_real t = (x[a] - d->origin[a]) * (1 / d->cell);
+        if (a == 1 && mpm__flat(d)) continue;
+        if (!(t >= 0 && t < (mpm_real)d->cells[a])) return a;
+    }
+    return -1;
+}
+
+/* Writes the points of b behind those in the world, without counting them in. */
+static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
+{
+    mpm_points *p = &w->points;
+    const mpm_body_desc *d = &b->desc;
+    mpm__lattice l = mpm__lattice_begin(&w->desc, &d->shape, d->spacing);
+    int32_t i = p->count, other;
+    double mass = 0;
+    mpm_real x[3];
+    int a, flat = mpm__flat(&w->desc);
+    while (mpm__lattice_next(&l, &w->desc, &d->shape, x)) {
+        if (i >= p->capacity) return mpm_fail(f, MPM_ERR_FULL, "points", (mpm_real)p->capacity, -1);
+        if ((a = mpm__axis_outside(&w->desc, x)) >= 0)
+            return mpm_fail(f, MPM_ERR_OUTSIDE, a == 0 ? "x of a point" : a == 1 ? "y of a point" : "z of a point",
+                             x[a], w->bodies);
+        if ((other = mpm__body_at(w, x)) >= 0)
+            return mpm_fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
+        for (a = 0; a < w->fields; a++) w->field[(size_t)a * w->stride + (size_t)i] = 0;
+        for (a = 0; a < 3; a++) {
+            p->x[a][i] = x[a];
+            p->v[a][i] = d->velocity[a];
+        }
+        p->mass[i] = mpm__point_mass(&w->desc, d, x);
+        p->density[i] = d->density;
+        p->temperature[i] = d->temperature;
+        p->flags[i] = mpm__flags(d, x, flat);
+        p->id[i] = i;
+        if (p->flags[i] & MPM_FACE_BOTTOM) b->mass[0] += p->mass[i];
+        if (p->flags[i] & MPM_FACE_RIM) b->mass[1] += p->mass[i];
+        mass += (double)p->mass[i];
+        i++;
+    }
+    if (i == p->count) return mpm_fail(f, MPM_ERR_ARGUMENT, "shape (holds no point at spacing)", d->spacing, -1);
+    b->first = p->count;
+    b->count = b->active = i - p->count;
+    b->point_mass = (mpm_real)(mass / b->count);
+    return MPM_OK;
+}
+
+/* A body added earlier may stick into the new one without the reverse. */
+static inline int32_t mpm__point_inside(const mpm_world *w, const mpm_shape *s)
+{
+    const mpm_points *p = &w->points;
+    int32_t b, i;
+    for (b = 0; b < w->bodies; b++)
+        for (i = w->body[b].first; i < w->body[b].first + w->body[b].active; i++) {
+            mpm_real x[3];
+            x[0] = p->x[0][i];
+            x[1] = p->x[1][i];
+            x[2] = p->x[2][i];
+            if (mpm__contains(s, x, mpm__flat(&w->desc), 0)) return b;
+        }
+    return -1;
+}
+
+MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *desc)
+{
+    mpm_body b;
+    mpm_status s;
+    int32_t other;
+    memset(&b, 0, sizeof b);
+    if ((s = mpm__body_check(w, desc, &w->fault)) != MPM_OK) return s;
+    if ((other = mpm__point_inside(w, &desc->shape)) >= 0)
+        return mpm_fail(&w->fault, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
+    b.desc = *desc;
+    mpm__areas(&w->desc, &b);
+    if ((s = mpm__fill(w, &b, &w->fault)) != MPM_OK) return s;
+    w->body[w->bodies++] = b;
+    w->points.count += b.count;
+    w->sorted_runs = 0;
+    /* Room for the nodes, with half as much again to spare; caller's memory cannot grow by itself. */
+    for (;;) {
+        s = mpm_locate(w);
+        if (s == MPM_OK && w->owns_work && w->nodes + w->nodes / 2 > w->node_capacity) s = MPM_ERR_FULL;
+        if (s != MPM_ERR_FULL || !w->owns_work) break;
+        if ((s = mpm_reserve(w, NULL, 0)) != MPM_OK) break;
+    }
+    if (s < 0) {
+        w->bodies--;
+        w->points.count -= b.count;
+    }
+    return s;
+}
+
+MPM_API mpm_real mpm_time_step(const mpm_world *w, mpm_real factor)
+{
+    mpm_real c = 0;
+    int32_t b;
+    for (b = 0; b < w->bodies; b++)
+        if (w->body[b].desc.wave_p > c) c = w->body[b].desc.wave_p;
+    return c > 0 ? factor * w->desc.cell / c : 0;
+}
+
+/* ---- describing a problem ------------------------------------------------------------------ */
+
+MPM_API mpm_desc mpm_desc_default(void)
+{
+    mpm_desc d;
+    memset(&d, 0, sizeof d);
+    d.cells[0] = d.cells[1] = d.cells[2] = 1;
+    d.mass_cutoff = MPM_EPSILON * MPM_EPSILON;
+    d.contact_cutoff = MPM_R(1e-3);
+    return d;
+}
+
+MPM_API mpm_body_desc mpm_body_desc_default(void)
+{
+    mpm_body_desc b;
+    memset(&b, 0, sizeof b);
+    b.temperature = 298;
+    b.absorb_normal = b.absorb_shear = 1;
+    b.shell = 1;
+    return b;
+}
+
+/* The choices of a description: each one of its list. */
+static inline mpm_status mpm__desc_choices(const mpm_desc *d, mpm_fault *f)
+{
+    const char *const name[] = {"geometry", "basis", "contact", "normal", "separation"};
+    const int value[] = {(int)d->geometry, (int)d->basis, (int)d->contact, (int)d->normal, d->separation};
+    const int last[] = {MPM_AXISYMMETRIC, MPM_GIMP, MPM_CONTACT_NONE, MPM_NORMAL_LOGISTIC, 1};
+    mpm_status s = MPM_OK;
+    int i;
+    for (i = 0; i < 5 && s == MPM_OK; i++)
+        s = mpm_want(value[i] >= 0 && value[i] <= last[i], f, name[i], (mpm_real)value[i], -1);
+    for (i = 0; i < 6 && s == MPM_OK; i++)
+        s = mpm_want((int)d->side[i] >= 0 && (int)d->side[i] <= MPM_SIDE_WALL, f, "side", (mpm_real)d->side[i], i);
+    return s;
+}
+
+MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *f)
+{
+    mpm_status s = mpm__desc_choices(d, f);
+    double nodes = 1;
+    int a;
+    if (s != MPM_OK) return s;
+    if ((s = mpm_want(d->cell > 0, f, "cell", d->cell, -1)) != MPM_OK) return s;
+    for (a = 0; a < 3; a++) {
+        if ((s = mpm_want(1, f, "origin", d->origin[a], a)) != MPM_OK) return s;
+        if ((s = mpm_want(1, f, "gravity", d->gravity[a], a)) != MPM_OK) return s;
+        if (a == 1 && d->geometry != MPM_3D) continue;
+        if ((s = mpm_want(d->cells[a] >= 1, f, "cells", (mpm_real)d->cells[a], a)) != MPM_OK) return s;
+        nodes *= d->cells[a] + 3.0;
+    }
+    if ((s = mpm_want(nodes < 2147483647.0, f, "cells in all", (mpm_real)nodes, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->points >= 1, f, "points", (mpm_real)d->points, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->bodies >= 1, f, "bodies", (mpm_real)d->bodies, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->nodes >= 0, f, "nodes", (mpm_real)d->nodes, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->friction >= 0, f, "friction", d->friction, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->wall_friction >= 0, f, "wall_friction", d->wall_friction, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->mass_cutoff >= 0, f, "mass_cutoff", d->mass_cutoff, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->contact_cutoff >= 0, f, "contact_cutoff", d->contact_cutoff, -1)) != MPM_OK) return s;
+    if ((s = mpm_want(d->bond_width >= 0 && d->bond_width <= 2, f, "bond_width", d->bond_width, -1)) != MPM_OK)
+        return s;
+    if ((s = mpm_want(d->user_fields >= 0 && d->user_fields <= MPM_USER_FIELDS, f, "user_fields",
+                       (mpm_real)d->user_fields, -1)) != MPM_OK)
+        return s;
+    if (d->geometry == MPM_AXISYMMETRIC && !(d->origin[0] >= 0))
+        return mpm_fail(f, MPM_ERR_ARGUMENT, "origin of r", d->origin[0], 0);
+    return MPM_OK;
 }
 
 #ifdef __cplusplus

@@ -8,6 +8,7 @@
 #include "mpm.h"
 #include "mpm_ptw.h"
 #include "mpm_bond.h"
+#include "mpm_measure.h"
 
 /* What to run. Every member is an option of examples/impact; the defaults are its main job. */
 typedef struct impact_case {

@@ -81,7 +81,7 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
         mpm_bond_nodes(&s->bond, w); /* without mpm_bond_grow: the bond is made */
         mpm_contact_apply(w, dt);
         if (mpm_pull_apply(p, w, dt)) { /* the grips give their nodes their velocity */
-            met = mpm_bond_interface(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
+            met = mpm_interface_of(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
             c->separation[c->count] = (mpm_real)p->separation;
             c->stress[c->count++] = (mpm_real)(p->force / p->desc.area);
             mpm_io_csv_real(table, (mpm_real)(p->time * 1e3));
@@ -190,7 +190,7 @@ static int run(impact *s, const impact_case *ic, const pull_case *o, curve *c, c
     while (s->world.steps < s->steps)
         if (impact_step(s) < 0) return report(&s->world.fault, "impact");
     r = impact_measure(s, ic);
-    met = mpm_bond_interface(&s->world, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
+    met = mpm_interface_of(&s->world, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
     memset(&p, 0, sizeof p);
     snprintf(grip, sizeof grip, "--grip %g, which leaves nothing to draw at", o->grip);
     if (met.area > 0 && describe(&p, s, ic, o, &met, &fault) != MPM_OK) return report(&fault, grip);

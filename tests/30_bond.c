@@ -270,8 +270,8 @@ static void interface(void)
     find_contact(&w);
     mpm_bond_nodes(&b, &w);
     mpm_contact_apply(&w, dt);
-    f = mpm_bond_interface(&w, 0, 1);
-    back = mpm_bond_interface(&w, 1, 0);
+    f = mpm_interface_of(&w, 0, 1);
+    back = mpm_interface_of(&w, 1, 0);
     CHECK_EQUAL("nodes of the interface", f.nodes, 25);
     CHECK_EQUAL("... with D >= 1: mean at x = 0 is 1", f.bonded, 15);
     CHECK_EQUAL("... all held, for the cube leaves", f.held, 15);
@@ -279,8 +279,8 @@ static void interface(void)
     CHECK_RELATIVE("... of its bonded nodes: 2.5 of 4", f.bonded_area, 10, 64 * eps);
     CHECK_TRUE("the bond pulls the cube down", f.impulse[2] < 0);
     CHECK_NEAR("... and the slab up", back.impulse[2], -f.impulse[2], 0);
-    CHECK_EQUAL("a body meets itself nowhere", mpm_bond_interface(&w, 0, 0).nodes, 0);
-    CHECK_EQUAL("-1: all others", mpm_bond_interface(&w, 0, -1).nodes, 25);
+    CHECK_EQUAL("a body meets itself nowhere", mpm_interface_of(&w, 0, 0).nodes, 0);
+    CHECK_EQUAL("-1: all others", mpm_interface_of(&w, 0, -1).nodes, 25);
 
     state_by_hand(&w);
     for (i = 0; i < w.points.count; i++) w.points.bond[i] = 0;
@@ -319,7 +319,7 @@ static double held_by(double D, double width)
     find_contact(&w);
     mpm_bond_nodes(&b, &w);
     mpm_contact_apply(&w, MPM_R(1e-5));
-    impulse = mpm_bond_interface(&w, 0, 1).impulse[2];
+    impulse = mpm_interface_of(&w, 0, 1).impulse[2];
     mpm_free(&w);
     return impulse;
 }
@@ -356,7 +356,7 @@ static void rings(void)
         mpm_body_add(&w, &disc);
         mpm_body_add(&w, &slab);
         find_contact(&w);
-        CHECK_RELATIVE(gimp ? "area in rings, GIMP" : "area in rings, linear", mpm_bond_interface(&w, 0, 1).area,
+        CHECK_RELATIVE(gimp ? "area in rings, GIMP" : "area in rings, linear", mpm_interface_of(&w, 0, 1).area,
                        3.14159265358979 * 4, 1e3 * eps);
         mpm_free(&w);
     }

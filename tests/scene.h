@@ -5,6 +5,7 @@
 #include "mpm.h"
 #include "mpm_ptw.h"
 #include "mpm_bond.h"
+#include "mpm_measure.h"
 
 /* Aluminium, elastic or as it is. */
 static inline mpm_material scene_metal(int elastic, mpm_units u)

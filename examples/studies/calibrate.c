@@ -84,7 +84,7 @@ static int write_summary(const calibration *q, const calibration_result *r, cons
         mpm_io_json_integer(&j, "bonded", side->bonded);
         mpm_io_json_string(&j, "fit", side->why);
         if (side->status >= 0) {
-            mpm_bond_logistic_theta(&side->fit, theta);
+            mpm_logistic_theta(&side->fit, theta);
             for (k = 0; k < 6; k++) {
                 snprintf(name, sizeof name, "theta_%d", k);
                 mpm_io_json_number(&j, name, theta[k]);

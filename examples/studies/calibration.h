@@ -202,7 +202,7 @@ static inline void calibration_collect(const calibration *q, const study *s, cal
             outcome[side->tests++] = side->map.bonds[k];
             side->bonded += side->map.bonds[k];
         }
-        side->status = mpm_bond_logistic_fit(&side->fit, x1, x2, outcome, side->tests, q->ridge, 200, NULL);
+        side->status = mpm_logistic_fit(&side->fit, x1, x2, outcome, side->tests, q->ridge, 200, NULL);
         side->why = mpm_io_status_text(side->status);
         if (side->bonded == 0 || side->bonded == side->tests) side->why = "one class only";
         if (side->tests < 6) side->why = "fewer than six runs";
@@ -214,7 +214,7 @@ static inline void calibration_collect(const calibration *q, const study *s, cal
     r->same = r->side[0].status >= 0 && r->side[1].status >= 0 &&
               !memcmp(r->side[0].map.bonds, r->side[1].map.bonds, (size_t)calibration_nodes(q));
     if (r->side[0].status >= 0 && r->side[1].status >= 0 && !r->same)
-        r->points = mpm_bond_logistic_cross(&r->side[0].fit, &r->side[1].fit, low, high, r->point);
+        r->points = mpm_logistic_cross(&r->side[0].fit, &r->side[1].fit, low, high, r->point);
     for (k = 0; k < r->points; k++)
         for (size = 0; size < 2; size++) r->point[k][size] = calibration_from(q, r->point[k][size]);
 }
@@ -260,7 +260,7 @@ static inline int calibration_draw(const calibration *q, const calibration_resul
                                   t * (calibration_x(q, q->gc[1]) - calibration_x(q, q->gc[0])) / (STEPS - 1);
                 const int at = which * (STEPS + 1) + t;
                 const calibration_side *side = &r->side[size];
-                const int roots = side->status >= 0 ? mpm_bond_logistic_roots(&side->fit, x1, low, high, root) : 0;
+                const int roots = side->status >= 0 ? mpm_logistic_roots(&side->fit, x1, low, high, root) : 0;
                 bx[size][at] = (mpm_real)calibration_from(q, x1);
                 by[size][at] = (mpm_real)(which < roots ? calibration_from(q, root[which]) : nan(""));
                 bx[size][STEPS] = by[size][STEPS] = (mpm_real)nan("");

@@ -205,14 +205,14 @@ static inline void particles_report(const impact *s, const particles_case *q, pa
     while (changed) /* the bonded spread from the substrate */
         for (changed = 0, a = 0; a < substrate; a++)
             for (b = 0; b <= substrate && !linked[a]; b++)
-                if (b != a && linked[b] && mpm_bond_interface(w, a, b).bonded > 0) linked[a] = changed = 1;
+                if (b != a && linked[b] && mpm_interface_of(w, a, b).bonded > 0) linked[a] = changed = 1;
     particles_velocity(w, substrate, still);
     for (a = 0; a < substrate; a++) {
         const mpm_body *body = &w->body[a];
         double mass = 0, high = 0;
         int32_t i;
         r[a].bond = mpm_bond_measure_body(w, a);
-        r[a].nodes = mpm_bond_interface(w, a, -1).bonded;
+        r[a].nodes = mpm_interface_of(w, a, -1).bonded;
         r[a].ejected = mpm_rebound_of(w, a, 60).ejected_mass / mpm_body_totals(w, a).mass;
         for (i = body->first; i < body->first + body->count; i++) {
             mass += (double)w->points.mass[i];
@@ -299,7 +299,7 @@ static inline int particles_pairs(const impact *s, const particles_case *q)
     for (a = 0; a < (int32_t)q->count; a++)
         for (b = a + 1; b <= (int32_t)q->count; b++) {
             mpm_bond_measure m;
-            const mpm_interface f = mpm_bond_interface(&s->world, a, b);
+            const mpm_interface f = mpm_interface_of(&s->world, a, b);
             if (mpm_bond_measure_pair(&s->bond, &s->world, a, b, &m) < 0 || (m.contacted == 0 && f.nodes == 0))
                 continue;
             mpm_io_csv_integer(&t, a);

@@ -118,6 +118,23 @@ typedef double mpm_real;
 #define mpm_musl mpm_musl_f32
 #define mpm_stress mpm_stress_f32
 #define mpm_move mpm_move_f32
+#define mpm_shape_user mpm_shape_user_f32
+#define mpm_contact_check mpm_contact_check_f32
+#define mpm_body_add_points mpm_body_add_points_f32
+#define mpm_points_add mpm_points_add_f32
+#define mpm_point_take mpm_point_take_f32
+#define mpm_contact_set mpm_contact_set_f32
+#define mpm_contact_of mpm_contact_of_f32
+#define mpm_field_take mpm_field_take_f32
+#define mpm_support_of mpm_support_of_f32
+#define mpm_support_velocity mpm_support_velocity_f32
+#define mpm_push mpm_push_f32
+#define mpm_node_push mpm_node_push_f32
+#define mpm_node_find mpm_node_find_f32
+#define mpm_node_position mpm_node_position_f32
+#define mpm_pair_stick mpm_pair_stick_f32
+#define mpm_pair_area mpm_pair_area_f32
+#define mpm_pair_push mpm_pair_push_f32
 #define mpm_body_totals mpm_body_totals_f32
 #define mpm_bytes_used mpm_bytes_used_f32
 #endif
@@ -164,6 +181,8 @@ typedef struct mpm_fault {
 /* ---- tools --------------------------------------------------------------------------------- */
 
 /* What the headers share, for your own laws too: static inline, free to use. */
+
+#define MPM_MARK 0x6d706d32u /* what a _default function leaves in `mark`: a zeroed description is told by it */
 
 #define MPM_PI MPM_R(3.14159265358979323846)
 #define MPM_ALIGN 64 /* bytes: of what mpm_carve hands out */
@@ -276,20 +295,72 @@ typedef struct mpm_block {
    one stops the step, a positive one is counted and passed on. */
 typedef mpm_status (*mpm_stress_fn)(const void *material, const mpm_block *block);
 
+/* ---- lists --------------------------------------------------------------------------------- */
+
+/* Each choice stands once, as X(constant, "word", "meaning"): the enum, the checks and the option lists of the
+   programs are made from it. MPM_NAMES(MPM_BASIS_LIST) is "linear|gimp". */
+#define MPM__LIST_ENUM(name, word, text) name,
+#define MPM__NAME_BAR(name, word, text) "|" word
+#define MPM_NAMES(LIST) (&("" LIST(MPM__NAME_BAR))[1])
+
+#define MPM_GEOMETRY_LIST(X)                                                     \
+    X(MPM_3D, "3d", "three dimensions")                                          \
+    X(MPM_PLANE_STRAIN, "plane", "the plane x-z, per unit depth in y")           \
+    X(MPM_AXISYMMETRIC, "axisymmetric", "rings about z: x is the radius")
+
+#define MPM_BASIS_LIST(X)                                                        \
+    X(MPM_LINEAR, "linear", "trilinear hexahedra, the thesis's (A 3.20)")        \
+    X(MPM_GIMP, "gimp", "uGIMP, Bardenhagen and Kober 2004: points are boxes of fixed size")
+
+/* What happens at a side of the grid. */
+#define MPM_SIDE_LIST(X)                                                         \
+    X(MPM_SIDE_OPEN, "open", "nothing; points that cross it are retired")        \
+    X(MPM_SIDE_SYMMETRY, "symmetry", "no motion through it: a symmetry or sliding plane") \
+    X(MPM_SIDE_FIXED, "fixed", "no motion at all")                               \
+    X(MPM_SIDE_WALL, "wall", "a rigid wall: no motion into it, free to leave, Coulomb friction")
+
+/* How two bodies act on each other at a node that carries both. */
+#define MPM_CONTACT_LIST(X)                                                      \
+    X(MPM_CONTACT_FRICTION, "friction", "approaching: equal normal velocity, Coulomb friction (0: frictionless)") \
+    X(MPM_CONTACT_STICK, "stick", "approaching: equal velocity (A 3.31); separating: free") \
+    X(MPM_CONTACT_WELD, "weld", "always equal velocity: one velocity field, as in MPM without contact") \
+    X(MPM_CONTACT_NONE, "none", "bodies pass through each other")                \
+    X(MPM_CONTACT_USER, "user", "a law of your own: mpm_contact.fn")
+
+/* Where the contact normal of a pair of bodies comes from. All are collinear: n_i = -n_j. */
+#define MPM_NORMAL_LIST(X)                                                       \
+    X(MPM_NORMAL_RANKED, "ranked", "of the higher-numbered body; of the other where that vanishes") \
+    X(MPM_NORMAL_MVG, "mvg", "of the body with the larger volume gradient")      \
+    X(MPM_NORMAL_AVERAGE, "average", "of the difference of the two volume gradients") \
+    X(MPM_NORMAL_FIXED, "vertical", "along z: of two bodies the higher-numbered lies below") \
+    X(MPM_NORMAL_LOGISTIC, "logistic", "of the plane that parts their points best (Nairn, Hammerquist, Smith 2020)")
+
+typedef enum mpm_geometry { MPM_GEOMETRY_LIST(MPM__LIST_ENUM) MPM_GEOMETRIES } mpm_geometry;
+typedef enum mpm_basis { MPM_BASIS_LIST(MPM__LIST_ENUM) MPM_BASES } mpm_basis;
+typedef enum mpm_side { MPM_SIDE_LIST(MPM__LIST_ENUM) MPM_SIDE_KINDS } mpm_side;
+typedef enum mpm_contact_law { MPM_CONTACT_LIST(MPM__LIST_ENUM) MPM_CONTACT_LAWS } mpm_contact_law;
+typedef enum mpm_normal_rule { MPM_NORMAL_LIST(MPM__LIST_ENUM) MPM_NORMAL_RULES } mpm_normal_rule;
+
 /* ---- shapes -------------------------------------------------------------------------------- */
 
 typedef enum mpm_shape_kind {
-    MPM_SHAPE_NONE = 0,
+    MPM_SHAPE_NONE = 0,   /* bodies made from points */
     MPM_SHAPE_ELLIPSOID,  /* a sphere if the three half axes are equal */
     MPM_SHAPE_CYLINDER,   /* axis along z */
-    MPM_SHAPE_BOX
+    MPM_SHAPE_BOX,
+    MPM_SHAPE_USER        /* a function that says what is inside */
 } mpm_shape_kind;
+
+/* Whether x lies inside a shape of your own; in two dimensions x[1] is 0. */
+typedef int (*mpm_inside_fn)(void *context, const mpm_real x[3]);
 
 /* A solid given by its centre and half extents [length]. In two dimensions its x-z section. */
 typedef struct mpm_shape {
     mpm_shape_kind kind;
     mpm_real center[3];
     mpm_real half[3];
+    mpm_inside_fn inside; /* of MPM_SHAPE_USER: asked within centre +- half */
+    void *context;        /* passed to it */
 } mpm_shape;
 
 /* Shapes from centre and half axes, or from corners [length]. Nothing is checked here: mpm_body_add
@@ -299,47 +370,42 @@ MPM_API mpm_shape mpm_ellipsoid(mpm_real x, mpm_real y, mpm_real z, mpm_real a, 
 MPM_API mpm_shape mpm_cylinder(mpm_real x, mpm_real y, mpm_real z_bottom, mpm_real radius, mpm_real height);
 MPM_API mpm_shape mpm_box(mpm_real x0, mpm_real y0, mpm_real z0, mpm_real x1, mpm_real y1, mpm_real z1);
 
-/* 1 if the point (x, y, z) lies inside the shape, else 0. */
+/* A shape of your own: what of the box low .. high `inside` says yes to, on the box's lattice. It has a surface
+   layer like the others, and no faces for dampers. Test: 26_extend. */
+MPM_API mpm_shape mpm_shape_user(mpm_inside_fn inside, void *context, const mpm_real low[3], const mpm_real high[3]);
+
+/* 1 if the point (x, y, z) lies inside the shape, else 0. Test: 21_world. */
 MPM_API int mpm_shape_contains(const mpm_shape *s, mpm_real x, mpm_real y, mpm_real z);
+
+/* ---- contact rules ------------------------------------------------------------------------- */
+
+struct mpm_world;
+struct mpm_pair;
+
+/* A contact law of your own: asked for each pair of bodies at each node that carries both, once in a step,
+   between mpm_contact_find and the return to the points. All that is known of the pair is in *p: the slots of
+   its nodes (w->node[p->a], p->b) with mass and momentum at k+1, normal, separation, hold, limit. Writes to j the
+   momentum that a shall gain and b lose, and returns 1; or returns 0 for none. Test: 26_extend. */
+typedef int (*mpm_contact_fn)(void *context, const struct mpm_world *w, const struct mpm_pair *p, mpm_real j[3]);
+
+/* How two bodies meet. */
+typedef struct mpm_contact {
+    mpm_contact_law law;
+    mpm_normal_rule normal;
+    mpm_real friction;  /* Coulomb coefficient, >= 0 */
+    mpm_real cutoff;    /* a node has contact where both bodies weigh more than this share of a point
+                           there. Below it a point that barely reaches the node would push with its
+                           whole stress, which MUSL never lets it relieve. */
+    int touch;          /* 1: bodies touch where their points do; 0: where they share a node (thesis) */
+    mpm_contact_fn fn;  /* of MPM_CONTACT_USER */
+    void *context;      /* passed to it */
+} mpm_contact;
 
 /* ---- the description of a problem ---------------------------------------------------------- */
 
-typedef enum mpm_geometry { MPM_3D = 0, MPM_PLANE_STRAIN, MPM_AXISYMMETRIC } mpm_geometry;
-
-typedef enum mpm_basis {
-    MPM_LINEAR = 0,  /* trilinear hexahedra, the thesis's (A 3.20) */
-    MPM_GIMP         /* uGIMP, Bardenhagen and Kober 2004: points are boxes of fixed size */
-} mpm_basis;
-
-/* What happens at a side of the grid. */
-typedef enum mpm_side {
-    MPM_SIDE_OPEN = 0,   /* nothing; points that cross it are retired */
-    MPM_SIDE_SYMMETRY,   /* no motion through it: a symmetry or sliding plane */
-    MPM_SIDE_FIXED,      /* no motion at all */
-    MPM_SIDE_WALL        /* a rigid wall: no motion into it, free to leave, Coulomb friction */
-} mpm_side;
-
-/* How two bodies act on each other at a node that carries both. */
-typedef enum mpm_contact_law {
-    MPM_CONTACT_FRICTION = 0, /* approaching: equal normal velocity, Coulomb friction (0: frictionless) */
-    MPM_CONTACT_STICK,        /* approaching: equal velocity (A 3.31); separating: free */
-    MPM_CONTACT_WELD,         /* always equal velocity: one velocity field, as in MPM without contact */
-    MPM_CONTACT_NONE          /* bodies pass through each other */
-} mpm_contact_law;
-
-/* Where the contact normal of a pair of bodies comes from. All are collinear: n_i = -n_j. */
-typedef enum mpm_normal_rule {
-    MPM_NORMAL_RANKED = 0, /* of the higher-numbered body; of the other where that vanishes */
-    MPM_NORMAL_MVG,        /* of the body with the larger volume gradient */
-    MPM_NORMAL_AVERAGE,    /* of the difference of the two volume gradients */
-    MPM_NORMAL_FIXED,      /* along z: of two bodies the higher-numbered lies below */
-    MPM_NORMAL_LOGISTIC    /* of the plane that parts their points best: logistic regression (Nairn,
-                              Hammerquist, Smith 2020, Comput. Methods Appl. Mech. Engrg. 362, 112859) */
-} mpm_normal_rule;
-
-/* The problem: grid, geometry, capacities. Start from mpm_desc_default() and set at least cell,
-   cells, points and bodies. */
+/* The problem: grid, geometry, capacities. Start from mpm_desc_default() and set at least cell and cells. */
 typedef struct mpm_desc {
+    unsigned mark;           /* set by mpm_desc_default */
     mpm_geometry geometry;
     mpm_basis basis;
     mpm_real origin[3];      /* lowest corner of the grid [length] */
@@ -347,62 +413,79 @@ typedef struct mpm_desc {
     int32_t cells[3];        /* cells per direction, >= 1; cells[1] is ignored in two dimensions */
     mpm_side side[6];        /* x low, x high, y low, y high, z low, z high */
     mpm_real wall_friction;  /* Coulomb coefficient of MPM_SIDE_WALL, >= 0 */
-    mpm_contact_law contact;
-    mpm_normal_rule normal;
-    mpm_real friction;       /* Coulomb coefficient between bodies, >= 0 */
-    int separation;          /* 1: bodies touch where their points do; 0: where they share a node (thesis) */
-    mpm_real contact_cutoff; /* a node has contact where both bodies weigh more than this share of a point
-                                there. Below it a point that barely reaches the node would push with its
-                                whole stress, which MUSL never lets it relieve. */
-    mpm_real bond_width;     /* 0: a pair is held from D = 1 on (A 4.7). > 0, up to 2: a softened threshold; each
-                                step takes a share of the separating momentum, none at D = 1 - width/2, all at
-                                1 + width/2. The load has no limit: within 1/share steps the pair carries it */
+    mpm_contact contact;     /* of every pair of bodies without a rule of its own: mpm_contact_set */
     mpm_real gravity[3];     /* [length/time^2] */
     mpm_real mass_cutoff;    /* nodes lighter than this share of a mean point's mass are passed over:
                                 beyond it lie numbers too small to divide by (GIMP's outermost nodes) */
-    int32_t points;          /* capacity, all bodies; see mpm_shape_count */
-    int32_t bodies;          /* capacity */
-    int32_t nodes;           /* capacity of (node, body) pairs; 0: estimated */
+    /* capacities: in memory from MPM_MALLOC they may be 0 and grow by themselves; in yours they are final */
+    int32_t points;          /* of all bodies; see mpm_shape_count */
+    int32_t bodies;
+    int32_t rules;           /* contact rules set by mpm_contact_set */
+    int32_t nodes;           /* (node, body) pairs; 0: estimated */
     int user_fields;         /* further mpm_real per point, 0 .. MPM_USER_FIELDS, carried along */
 } mpm_desc;
 
+/* Linear functions in three dimensions, frictionless contact at nodes, open sides, no gravity. Test: 21_world. */
 MPM_API mpm_desc mpm_desc_default(void);
 
 /* ---- points -------------------------------------------------------------------------------- */
 
 /* Flags of a point: where on its body it was born. */
 enum {
-    MPM_POINT_SURFACE = 1,  /* within one shell of a free face: the points that contact and bond */
+    MPM_POINT_SURFACE = 1, /* within one shell of a free face: the points that contact and bond */
     MPM_FACE_TOP = 2,      /* within one spacing of a cylinder's or box's upper face */
     MPM_FACE_BOTTOM = 4,   /* ... of its lower face */
-    MPM_FACE_RIM = 8     /* ... of its circumference */
+    MPM_FACE_RIM = 8       /* ... of its circumference */
 };
+
+/* What a point carries, as X(field, components, "unit", "meaning"): the members below, their places in memory
+   and in a checkpoint are made from it. */
+#define MPM_POINT_VECTORS(X)                                                          \
+    X(x, 3, "length", "position")                                                     \
+    X(v, 3, "length/time", "velocity")                                                \
+    X(stress, 6, "stress", "Cauchy stress, xx yy zz yz xz xy, tension positive")
+#define MPM_POINT_SCALARS(X)                                                          \
+    X(mass, 1, "mass", "in axisymmetry that of the whole ring")                       \
+    X(density, 1, "mass/length^3", "now")                                             \
+    X(energy, 1, "energy/mass", "internal energy")                                    \
+    X(temperature, 1, "K", "")                                                        \
+    X(plastic_strain, 1, "1", "effective plastic strain")                             \
+    X(plastic_rate, 1, "1/time", "its rate in the last step")                         \
+    X(plastic_work, 1, "stress", "per current volume (A 4.15)")                       \
+    X(bond, 1, "1", "D, the bonding history of a surface point (A 4.3, 4.16)")
 
 /* The points of all bodies, one array per field. Body b owns [first, first + count); of these the
    last count - active are retired: they have left the grid and stay as they were. */
 typedef struct mpm_points {
     int32_t count;            /* points of all bodies */
     int32_t capacity;
-    mpm_real *x[3];           /* position [length] */
-    mpm_real *v[3];           /* velocity [length/time] */
-    mpm_real *mass;           /* in axisymmetry the mass of the whole ring */
-    mpm_real *density;        /* [mass/length^3] */
-    mpm_real *stress[6];      /* Cauchy, xx yy zz yz xz xy, tension positive */
-    mpm_real *energy;         /* internal energy per mass */
-    mpm_real *temperature;    /* [K] */
-    mpm_real *plastic_strain; /* effective plastic strain */
-    mpm_real *plastic_rate;   /* its rate in the last step [1/time] */
-    mpm_real *plastic_work;   /* per current volume [stress] */
-    mpm_real *bond;           /* D, the bonding history variable (A 4.3, 4.16) */
-    mpm_real *user[MPM_USER_FIELDS];
+#define MPM__POINT_VECTOR(name, components, unit, text) mpm_real *name[components];
+#define MPM__POINT_SCALAR(name, components, unit, text) mpm_real *name;
+    MPM_POINT_VECTORS(MPM__POINT_VECTOR)
+    MPM_POINT_SCALARS(MPM__POINT_SCALAR)
+#undef MPM__POINT_VECTOR
+#undef MPM__POINT_SCALAR
+    mpm_real *user[MPM_USER_FIELDS]; /* see mpm_field_take */
     uint8_t *flags;           /* MPM_POINT_SURFACE ... */
     int32_t *id;              /* number of the point as created: survives sorting */
 } mpm_points;
 
+/* Points to make a body of, or to add to one: `count` entries per array. NULL where the body's description says
+   it for all. */
+typedef struct mpm_cloud {
+    int32_t count;
+    const mpm_real *x[3];     /* position; x[1] may be NULL in two dimensions */
+    const mpm_real *v[3];     /* velocity; NULL: the body's */
+    const mpm_real *mass;     /* in axisymmetry of the whole ring; NULL: volume times the body's density */
+    const mpm_real *volume;   /* NULL: a cube, square or ring section of the body's spacing */
+    const uint8_t *flags;     /* MPM_POINT_SURFACE ...; NULL: 0, so that none bonds */
+} mpm_cloud;
+
 /* ---- bodies -------------------------------------------------------------------------------- */
 
-/* A body to add: its shape is filled with points on a cubic lattice. */
+/* A body to add: its shape is filled with points on a cubic lattice, or its points are given. */
 typedef struct mpm_body_desc {
+    unsigned mark;           /* set by mpm_body_desc_default */
     mpm_shape shape;
     mpm_real spacing;        /* distance of points [length], 0 < spacing <= cell */
     mpm_real density;        /* [mass/length^3], > 0 */
@@ -412,10 +495,12 @@ typedef struct mpm_body_desc {
     const void *material;    /* passed to it */
     mpm_real wave_p, wave_s; /* longitudinal and shear wave speeds: time step and dampers */
     int absorb;              /* faces with a viscous damper: MPM_FACE_BOTTOM | MPM_FACE_RIM (A 3.45) */
-    mpm_real absorb_normal, absorb_shear; /* damper factors, normal and tangential (thesis: 1) */
+    mpm_real absorb_normal, absorb_shear; /* damper factors a and b of A 3.45 (thesis: 1) */
     mpm_real shell;          /* thickness of the MPM_POINT_SURFACE layer in spacings */
+    int32_t id;              /* number of its first point, the others count on; -1: after the last one made */
 } mpm_body_desc;
 
+/* No motion, 298 K, no stress, full dampers where asked for, a surface layer of one spacing. Test: 21_world. */
 MPM_API mpm_body_desc mpm_body_desc_default(void);
 
 typedef struct mpm_body {
@@ -428,24 +513,29 @@ typedef struct mpm_body {
 
 /* ---- the grid ------------------------------------------------------------------------------ */
 
-/* One node as one body sees it. Slots exist only where a body has points: memory grows with what
+/* One node as one body sees it: a slot. Slots exist only where a body has points: memory grows with what
    bodies occupy. Slots of the same node form a chain, highest body first. */
 typedef struct mpm_node {
     mpm_real mass;
     mpm_real momentum[3];  /* at k, then k+1 */
     mpm_real force[3];     /* internal + external + contact */
     mpm_real velocity[3];  /* at k+1, mapped back from the updated points (MUSL) */
-    mpm_real gradient[3];  /* sum of m grad N: out of the body; at contact nodes only */
-    mpm_real reaction[3];  /* momentum given by rigid walls in this step */
-    mpm_real bond[2];      /* sum of D over surface points and of its weights (mpm_bond.h) */
+    mpm_real reaction[3];  /* momentum given from outside in this step: walls, mpm_node_push */
     int32_t index;         /* number of the node in the grid */
     int32_t next;          /* next slot of this node, or -1 */
     int32_t body;
-    int32_t flags;         /* bit s: on side s of the grid; bit 6: contact */
-    int32_t pair;          /* first pair at a contact node; those of one node follow each other */
+    int32_t flags;         /* bit s: on side s of the grid; MPM_NODE_CONTACT */
+    int32_t touch;         /* its record in world.touch, or -1: at contact nodes only */
 } mpm_node;
 
 #define MPM_NODE_CONTACT 64
+
+/* What a slot carries besides where bodies meet. */
+typedef struct mpm_touch {
+    mpm_real gradient[3];  /* sum of m grad N (A 3.30): out of the body */
+    mpm_real work[2];      /* for your sums over points, 0 after mpm_contact_find (mpm_bond.h: D and weights) */
+    int32_t pair;          /* first pair of the node; those of one node follow each other */
+} mpm_touch;
 
 /* A run: consecutive points of one body that share a base node, so that nodal values are fetched
    once and points are swept in plain loops. */
@@ -459,12 +549,15 @@ typedef struct mpm_run {
 /* Two bodies meeting at a node. */
 typedef struct mpm_pair {
     int32_t a, b;        /* slots; b belongs to the higher-numbered body */
+    const mpm_contact *rule;
     mpm_real normal[3];  /* unit, outward of a, into b; zero where no normal can be told */
-    mpm_real separation; /* gap between the bodies' points along it [length]; with desc.separation */
+    mpm_real separation; /* gap between the bodies' points along it [length]; with rule.touch */
     mpm_real high, low;  /* ... whose ends these are, counted from the node */
-    mpm_real bond;       /* nodal D: at 1 or more the pair holds together when separating (see bond_width) */
+    mpm_real hold;       /* share of the separating momentum that is taken, 0 .. 1: set it between
+                            mpm_contact_find and mpm_contact_apply, as mpm_bond.h does */
+    mpm_real limit;      /* largest impulse of the hold [mass length/time]; 0: none */
     mpm_real impulse[3]; /* momentum that a got and b gave in this step */
-    int held;            /* 1 if the bond gave it */
+    int held;            /* 1 if the hold gave it */
 } mpm_pair;
 
 /* Work space of the plane that parts the points of a pair: see mpm__plane_normals. */
@@ -476,21 +569,27 @@ typedef struct mpm_plane {
 } mpm_plane;
 
 /* Where energy and momentum went, summed over the steps. A nodal force f does the work
-   f dt . (v_k + v_musl) / 2 on the points, exactly: so kinetic + internal + absorbed + contact + bond
-   + walls - gravity is constant but for the error of the stress work, integrated in time. */
+   f dt . (v_k + v_musl) / 2 on the points, exactly: so kinetic + internal + absorbed + contact + hold
+   + walls - work is constant but for the error of the stress work, integrated in time. */
 typedef struct mpm_ledger {
     double absorbed;     /* energy taken by the viscous dampers */
     double contact;      /* energy lost in contact: nodal impact and friction */
-    double bond;         /* energy lost in holding bonds */
-    double walls;        /* energy lost at rigid walls; less what grips (mpm_bond.h) brought in */
-    double gravity;      /* work done by gravity */
-    double impulse[3];   /* momentum brought in by dampers, sides, mirror images, gravity and grips */
+    double hold;         /* energy lost in holding pairs: bonds */
+    double walls;        /* energy lost at rigid walls; less what mpm_node_push brought in */
+    double work;         /* done by gravity and by mpm_push */
+    double impulse[3];   /* momentum brought in by all but contact: dampers, sides, mirror images, gravity, pushes */
 } mpm_ledger;
+
+/* A contact rule of a pair of bodies; -1 stands for any. */
+typedef struct mpm_rule {
+    int32_t a, b;
+    mpm_contact contact;
+} mpm_rule;
 
 /* Everything. Plain data: read it, and write it between phases if you know why. */
 typedef struct mpm_world {
     mpm_desc desc;
-    mpm_real time;
+    mpm_real time, dt;       /* now; the step under way, set by mpm_locate */
     long steps;
     mpm_points points;
     mpm_body *body;
@@ -501,19 +600,26 @@ typedef struct mpm_world {
     long sorts;              /* times the points were put back in cell order */
     long notices;            /* positive statuses returned by materials */
     int64_t tally[MPM_TALLIES]; /* counters of laws */
-    long held;               /* pairs that the bond held in the last step */
+    long held;               /* pairs that were held in the last step */
+    int32_t next_id;         /* of the next point made */
+    mpm_rule *rule;          /* of mpm_contact_set; the last that fits a pair is its rule */
+    int32_t rules;
+    const char *user_name[MPM_USER_FIELDS]; /* of mpm_field_take; NULL: not taken */
 
     int32_t nodes_per_axis[3], ghost; /* grid nodes, ghost layers included */
     int support[3];          /* nodes a point touches per direction */
     int32_t *head;           /* per grid node: first slot, or -1 */
     mpm_node *node;          /* slots */
     int32_t nodes, node_capacity;
+    mpm_touch *touch;
+    int32_t touches;
     mpm_run *run;
     int32_t *slot;           /* per run: support[0]*support[1]*support[2] slots */
     int32_t runs, run_capacity, sorted_runs;
     mpm_pair *pair;
     int32_t pairs, pair_capacity, pairs_possible;
-    mpm_plane *plane;        /* per pair, if mpm_init saw MPM_NORMAL_LOGISTIC; else NULL, and normals are ranked */
+    mpm_plane *plane;        /* per pair, once a rule wants MPM_NORMAL_LOGISTIC; else NULL */
+    int planes;              /* 1: there is one */
     int32_t *key, *order;    /* per point: base node; permutation */
     mpm_real *field;         /* all real point arrays: field f at field + f * stride */
     mpm_real *scratch;       /* one array more */
@@ -527,82 +633,171 @@ typedef struct mpm_world {
 /* ---- setting up ---------------------------------------------------------------------------- */
 
 /* Points that mpm_body_add will create for this shape (those cut off by symmetry planes excluded). 0 for a
-   shape or spacing that is not positive, or when the box around the shape would hold 2^31 of them. */
+   shape or spacing that is not positive, or when the box around the shape would hold 2^31 of them.
+   Test: 21_world. */
 MPM_API int32_t mpm_shape_count(const mpm_desc *d, const mpm_shape *s, mpm_real spacing);
 
 /* Checks a description. On failure fills fault (may be NULL) with the field and its value.
-   MPM_ERR_ARGUMENT, MPM_ERR_NAN. */
+   MPM_ERR_ARGUMENT, MPM_ERR_NAN. Test: 21_world. */
 MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *fault);
 
-/* Bytes that mpm_init needs for d; 0 if d is invalid or the size overflows. */
+/* The same of a contact rule. Test: 26_extend. */
+MPM_API mpm_status mpm_contact_check(const mpm_contact *c, mpm_fault *fault);
+
+/* Bytes that mpm_init needs for d; 0 if d is invalid or the size overflows. Test: 21_world. */
 MPM_API size_t mpm_bytes(const mpm_desc *d);
 
 /* Prepares a world in caller's memory (kept until the end; aligned as malloc aligns), or with
-   memory == NULL in memory from MPM_MALLOC. MPM_ERR_ARGUMENT / NAN (see w->fault), MPM_ERR_MEMORY. */
+   memory == NULL in memory from MPM_MALLOC, which then grows by itself: in mpm_body_add and its like, and where
+   mpm_locate finds more nodes than there is room for. MPM_ERR_ARGUMENT / NAN (see w->fault), MPM_ERR_MEMORY.
+   Test: 21_world. */
 MPM_API mpm_status mpm_init(mpm_world *w, const mpm_desc *d, void *memory, size_t bytes);
 
-/* Gives back what MPM_MALLOC gave. Safe on a world whose mpm_init failed. */
+/* Gives back what MPM_MALLOC gave. Safe on a world whose mpm_init failed. Test: 21_world. */
 MPM_API void mpm_free(mpm_world *w);
 
 /* Fills a shape with points. Numbered in the order of the calls; add the substrate last.
    MPM_ERR_ARGUMENT / NAN: a field of b; MPM_ERR_OUTSIDE: a point outside the grid (points beyond a
-   symmetry plane are cut off instead); MPM_ERR_OVERLAP: with body fault.index; MPM_ERR_FULL. On
-   failure the world is unchanged. Test: 20_grid. */
+   symmetry plane are cut off instead); MPM_ERR_OVERLAP: with body fault.index; MPM_ERR_FULL; MPM_ERR_MEMORY. On
+   failure the world is unchanged. Test: 21_world. */
 MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *b);
 
-/* Makes room after MPM_ERR_FULL: at least doubles nodes, runs and pairs, in the caller's block
+/* A body of given points: b says what the cloud leaves open, its shape is not read, so that it can have no
+   dampers. spacing is the size of the points with GIMP. MPM_ERR_ARGUMENT / NAN: an entry of the cloud, whose
+   number is fault.index; others as mpm_body_add. Test: 26_extend. */
+MPM_API mpm_status mpm_body_add_points(mpm_world *w, const mpm_body_desc *b, const mpm_cloud *points);
+
+/* Adds points to a body, between steps: those of later bodies move up in the arrays (their ids tell them).
+   Errors as mpm_body_add_points. Test: 26_extend. */
+MPM_API mpm_status mpm_points_add(mpm_world *w, int32_t body, const mpm_cloud *points);
+
+/* Takes point i (an index, not an id) out of the world, with its mass, between steps. Other points move.
+   MPM_ERR_ARGUMENT: there is none. Test: 26_extend. */
+MPM_API mpm_status mpm_point_take(mpm_world *w, int32_t i);
+
+/* The rule of contact between bodies a and b, in any order, -1 for any body: of several that fit, the one set
+   last. Bodies need not be there yet. MPM_ERR_ARGUMENT / NAN: a field of the rule; MPM_ERR_FULL: desc.rules; in
+   caller's memory logistic normals must stand in desc.contact too, for their room. Test: 26_extend. */
+MPM_API mpm_status mpm_contact_set(mpm_world *w, int32_t a, int32_t b, const mpm_contact *rule);
+
+/* The rule that bodies a and b meet by. Test: 26_extend. */
+MPM_API const mpm_contact *mpm_contact_of(const mpm_world *w, int32_t a, int32_t b);
+
+/* Takes a user field of the points by name (a text that stays): its number f, for points.user[f], 0 in all
+   points. The same name gives the same number again. -1 when there is none left. Test: 26_extend. */
+MPM_API int mpm_field_take(mpm_world *w, const char *name);
+
+/* Makes room after MPM_ERR_FULL in caller's memory: at least doubles nodes, runs and pairs, in the caller's block
    (used instead of the old one, which is then free) or with NULL in memory from MPM_MALLOC. The
-   points are untouched; repeat the step from mpm_locate. MPM_ERR_MEMORY. */
+   points are untouched; repeat the step from mpm_locate. MPM_ERR_MEMORY. Test: 21_world. */
 MPM_API mpm_status mpm_reserve(mpm_world *w, void *memory, size_t bytes);
 MPM_API size_t mpm_reserve_bytes(const mpm_world *w); /* bytes that mpm_reserve wants */
 
-/* Longitudinal and shear wave speeds of an isotropic solid (A 3.37, 3.46). E > 0, -1 < nu < 1/2. */
+/* Longitudinal and shear wave speeds of an isotropic solid (A 3.37, 3.46): sqrt((lambda + 2 mu) / rho),
+   sqrt(mu / rho). E > 0, -1 < nu < 1/2. Test: 21_world. */
 MPM_API mpm_real mpm_wave_speed_p(mpm_real young, mpm_real poisson, mpm_real density);
 MPM_API mpm_real mpm_wave_speed_s(mpm_real young, mpm_real poisson, mpm_real density);
 
-/* factor * cell / the fastest wave of any body (A 3.37); 0 without one. */
+/* factor * cell / the fastest wave of any body (A 3.37); 0 without one. Test: 21_world. */
 MPM_API mpm_real mpm_time_step(const mpm_world *w, mpm_real factor);
 
 /* ---- the step, phase by phase -------------------------------------------------------------- */
 
 /* One step of dt [time] > 0: the phases below in their order. Write your own loop to put something
-   between them. Returns what mpm_locate or mpm_stress return: MPM_OK, MPM_RETIRED; MPM_ERR_FULL and
-   MPM_ERR_NAN before anything changed; MPM_ERR_STATE with the step incomplete. Test: 20_method. */
+   between them. Returns what mpm_locate or mpm_stress return: MPM_OK, MPM_RETIRED; MPM_ERR_FULL, MPM_ERR_MEMORY
+   and MPM_ERR_NAN before anything changed; MPM_ERR_STATE with the step incomplete. Test: 20_method, 71_step. */
 MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt);
 
 /* Finds each point's base node, retires points outside the grid, restores cell order when it has
-   decayed, and gives every body slots for the nodes its points touch.
-   MPM_ERR_FULL: see mpm_reserve; MPM_ERR_NAN: position of point fault.index. Points are unchanged. */
-MPM_API mpm_status mpm_locate(mpm_world *w);
+   decayed, and gives every body slots for the nodes its points touch. The step dt is kept in w->dt for all that
+   follows. MPM_ERR_ARGUMENT / NAN: dt, which must be > 0; position of point fault.index. MPM_ERR_FULL in
+   caller's memory: see mpm_reserve; MPM_ERR_MEMORY. Points are unchanged. Test: 21_world. */
+MPM_API mpm_status mpm_locate(mpm_world *w, mpm_real dt);
 
-/* Mass and momentum to the nodes (A 3.23, 3.24), then essential boundary conditions. */
+/* Mass m_I = sum m_p N_I and momentum P_I = sum m_p v_p N_I to the nodes (A 3.23, 3.24), then essential
+   boundary conditions. Test: 20_method, 71_step. */
 MPM_API void mpm_p2g(mpm_world *w);
 
-/* Internal forces (A 3.25), gravity (A 3.26) and viscous dampers (A 3.45, 3.46) to the nodes. */
-MPM_API void mpm_forces(mpm_world *w, mpm_real dt);
+/* Forces to the nodes: internal -sum V_p sigma_p . grad N_I (A 3.25), gravity m_I g (A 3.26) and viscous dampers
+   (A 3.45, 3.46). Test: 20_method, 71_step. */
+MPM_API void mpm_forces(mpm_world *w);
 
-/* Nodal momentum P += f dt (A 3.28), with boundary conditions. */
-MPM_API void mpm_grid_update(mpm_world *w, mpm_real dt);
+/* Nodal momentum P_I += f_I dt (A 3.28), with boundary conditions. Test: 20_method, 71_step. */
+MPM_API void mpm_grid_update(mpm_world *w);
 
-/* Lists the pairs of bodies that meet at nodes, with their normals (A 3.30). */
+/* Lists the pairs of bodies that meet at nodes, with their normals, along sum m_p grad N_I (A 3.30).
+   Test: 23_solid, 25_contact. */
 MPM_API void mpm_contact_find(mpm_world *w);
 
-/* Contact forces on the pairs (A 3.29, 3.31); where pair.bond >= 1 separating pairs are held (A 4.7; see
-   desc.bond_width). Test: 30_bond. */
-MPM_API void mpm_contact_apply(mpm_world *w, mpm_real dt);
+/* Contact on the pairs: approaching ones, (m_b P_a - m_a P_b) . n > 0 (A 3.29), get the impulse that their rule
+   asks for, at most (m_a P_b - m_b P_a) / (m_a + m_b) on a (A 3.31); separating ones are held as far as
+   pair.hold says (A 4.7). Test: 23_solid, 25_contact, 30_bond. */
+MPM_API void mpm_contact_apply(mpm_world *w);
 
-/* Velocity of the points from nodal accelerations (A 3.32, first half). */
-MPM_API void mpm_g2p(mpm_world *w, mpm_real dt);
+/* Velocity of the points from nodal accelerations, v_p += dt sum N_I f_I / m_I (A 3.32, first half).
+   Test: 20_method, 71_step. */
+MPM_API void mpm_g2p(mpm_world *w);
 
-/* Nodal velocities from the updated points (A 3.33, 3.34): the M of MUSL. Keeps the energy ledger. */
-MPM_API void mpm_musl(mpm_world *w, mpm_real dt);
+/* Nodal velocities from the updated points, v_I = sum m_p v_p N_I / m_I (A 3.33, 3.34): the M of MUSL. Keeps the
+   energy ledger. Test: 20_method, 71_step. */
+MPM_API void mpm_musl(mpm_world *w);
 
-/* Strain and rotation increments (A 3.35), density (A 3.36), then the bodies' constitutive update.
-   MPM_ERR_STATE / NAN: fault names field, value and point; the step is then incomplete. */
-MPM_API mpm_status mpm_stress(mpm_world *w, mpm_real dt);
+/* Strain and rotation increments, d eps = dt sym grad v (A 3.35), density rho / (1 + tr d eps) (A 3.36), then the
+   bodies' constitutive update. MPM_ERR_STATE / NAN: fault names field, value and point; the step is then
+   incomplete. Test: 20_method, 71_step. */
+MPM_API mpm_status mpm_stress(mpm_world *w);
 
-/* Position of the points (A 3.32, second half) and time. Last, since all phases use level k. */
-MPM_API void mpm_move(mpm_world *w, mpm_real dt);
+/* Position of the points, x_p += dt sum N_I P_I / m_I (A 3.32, second half), and time. Last, since all phases use
+   level k. Test: 20_method, 71_step. */
+MPM_API void mpm_move(mpm_world *w);
+
+/* ---- between the phases: what extensions use ------------------------------------------------ */
+
+#define MPM_SUPPORT 27 /* most nodes a point touches */
+
+/* The nodes a point touches, with the values N and the gradients G of their functions at the point. */
+typedef struct mpm_support {
+    int count;
+    const int32_t *slot;            /* world.node[slot[a]], a < count */
+    mpm_real N[MPM_SUPPORT];
+    mpm_real G[3][MPM_SUPPORT];     /* [1/length] */
+    uint8_t mirror[MPM_SUPPORT];    /* bit d: the node stands for its image behind a symmetry plane, whose
+                                       component d is the negative */
+} mpm_support;
+
+/* Of point i, which lies in `run` (world.run[k], whose points are first .. first + count - 1). Between mpm_locate
+   and mpm_move. Test: 26_extend. */
+MPM_API void mpm_support_of(const mpm_world *w, const mpm_run *run, int32_t i, mpm_support *s);
+
+/* The grid's velocity at the point, sum N_I P_I / m_I. After mpm_p2g. Test: 26_extend. */
+MPM_API void mpm_support_velocity(const mpm_world *w, const mpm_support *s, mpm_real v[3]);
+
+/* An outer force f on a point, N_I f to its nodes: body forces, tractions. Impulse and work, f dt . (v + f dt / 2m)
+   with the grid's v, go to the ledger. Between mpm_p2g and mpm_grid_update. Test: 26_extend. */
+MPM_API void mpm_push(mpm_world *w, const mpm_support *s, const mpm_real f[3]);
+
+/* Momentum j to a slot from outside: rigid tools, prescribed velocities. What sides forbid is taken out of j; the
+   rest is in the ledger: in `impulse`, its work in `walls` (negative: brought in). Between mpm_grid_update and
+   mpm_g2p. Test: 32_pull. */
+MPM_API void mpm_node_push(mpm_world *w, int32_t slot, mpm_real j[3]);
+
+/* The slot of a body at grid node `index`, or -1. Test: 26_extend. */
+MPM_API int32_t mpm_node_find(const mpm_world *w, int32_t index, int32_t body);
+
+/* Where a node lies [length]; y is 0 in two dimensions. Test: 26_extend. */
+MPM_API void mpm_node_position(const mpm_world *w, const mpm_node *n, mpm_real x[3]);
+
+/* The impulse on a that gives both sides of a pair one velocity, (m_a P_b - m_b P_a) / (m_a + m_b) (A 3.31).
+   Returns its approach, -j . n: > 0 where they approach (A 3.29). Test: 26_extend. */
+MPM_API mpm_real mpm_pair_stick(const mpm_world *w, const mpm_pair *p, mpm_real j[3]);
+
+/* Surface that a pair stands for [length^2; per depth in plane strain]: the smaller of the two bodies' there,
+   |sum m grad N . n| / initial density. In a quarter model it is a quarter. Test: 30_bond. */
+MPM_API double mpm_pair_area(const mpm_world *w, const mpm_pair *p);
+
+/* Momentum j to a and -j to b, as contact laws give it: kept in pair.impulse for the ledger. Between
+   mpm_contact_find and mpm_g2p. Test: 26_extend. */
+MPM_API void mpm_pair_push(mpm_world *w, mpm_pair *p, const mpm_real j[3]);
 
 /* ---- looking at it ------------------------------------------------------------------------- */
 
@@ -616,8 +811,13 @@ typedef struct mpm_totals {
     long points, retired;
 } mpm_totals;
 
-MPM_API mpm_totals mpm_body_totals(const mpm_world *w, int32_t body); /* body -1: all */
-MPM_API size_t mpm_bytes_used(const mpm_world *w);                         /* bytes in use */
+/* Of one body, or of all (-1). Test: 21_world. */
+MPM_API mpm_totals mpm_body_totals(const mpm_world *w, int32_t body);
+
+/* Bytes in use. Test: 21_world. */
+MPM_API size_t mpm_bytes_used(const mpm_world *w);
+
+/* What a status means, and the version of the implementation. Test: 21_world. */
 MPM_API const char *mpm_status_text(mpm_status s);
 MPM_API const char *mpm_version(void);
 
@@ -651,7 +851,6 @@ MPM_API const char *mpm_version(void);
 #endif
 
 #define MPM__LANES 32   /* points of a run treated together */
-#define MPM__SUPPORT 27 /* most nodes a point touches */
 #ifdef MPM_FLOAT
 #define MPM__HAIR MPM_R(1e-5) /* cells; see mpm__weights_axis */
 #else
@@ -666,21 +865,26 @@ extern "C" {
 
 MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt)
 {
-    mpm_status s = mpm_locate(w);
+    mpm_status s = mpm_locate(w, dt);
     if (s < 0) return s;
     mpm_p2g(w);
-    mpm_forces(w, dt);
-    mpm_grid_update(w, dt);
+    mpm_forces(w);
+    mpm_grid_update(w);
     mpm_contact_find(w);
-    mpm_contact_apply(w, dt);
-    mpm_g2p(w, dt);
-    mpm_musl(w, dt);
-    if (mpm_stress(w, dt) < 0) return w->fault.status;
-    mpm_move(w, dt);
+    mpm_contact_apply(w);
+    mpm_g2p(w);
+    mpm_musl(w);
+    if (mpm_stress(w) < 0) return w->fault.status;
+    mpm_move(w);
     return s;
 }
 
 static inline int mpm__flat(const mpm_desc *d) { return d->geometry != MPM_3D; }
+
+static inline size_t mpm__grid_nodes(const mpm_world *w)
+{
+    return (size_t)w->nodes_per_axis[0] * (size_t)w->nodes_per_axis[1] * (size_t)w->nodes_per_axis[2];
+}
 
 /* ---- shape functions and the sweep over a run ------------------------------------------------ */
 
@@ -749,7 +953,7 @@ MPM__KERNEL void mpm__products(const mpm__weights *s, int p, int k, int ky, mpm_
 }
 
 /* ... and their gradients G[0], G[1], G[2]. */
-MPM__KERNEL void mpm__gradients(const mpm__weights *s, int p, int k, int ky, mpm_real G[3][MPM__SUPPORT])
+MPM__KERNEL void mpm__gradients(const mpm__weights *s, int p, int k, int ky, mpm_real G[3][MPM_SUPPORT])
 {
     int ix, iy, iz;
     for (iz = 0; iz < k; iz++)
@@ -826,21 +1030,20 @@ MPM__KERNEL mpm_real mpm__mirror(const mpm_run *r, int a, int d, int k, int ky)
 }
 
 /* Which vector of a node a sweep fetches or adds to. */
-typedef enum mpm__vector { MPM__MOMENTUM, MPM__FORCE, MPM__VELOCITY, MPM__GRADIENT } mpm__vector;
+typedef enum mpm__vector { MPM__MOMENTUM, MPM__FORCE, MPM__VELOCITY } mpm__vector;
 
 MPM__KERNEL mpm_real *mpm__node_vector(mpm_node *n, mpm__vector which)
 {
     switch (which) {
     case MPM__MOMENTUM: return n->momentum;
     case MPM__FORCE: return n->force;
-    case MPM__VELOCITY: return n->velocity;
-    default: return n->gradient;
+    default: return n->velocity;
     }
 }
 
 /* Adds V, summed over points of a run, to its nodes. */
 MPM__KERNEL void mpm__scatter(mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which,
-                              mpm_real V[3][MPM__SUPPORT])
+                              mpm_real V[3][MPM_SUPPORT])
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     int a, d;
@@ -853,7 +1056,7 @@ MPM__KERNEL void mpm__scatter(mpm_world *w, const mpm_run *r, int k, int ky, mpm
 /* Fetches a vector of a run's nodes, divided by the nodal mass if per_mass. Nodes lighter than the
    cutoff give zero. */
 MPM__KERNEL void mpm__gather(const mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which, int per_mass,
-                             mpm_real V[3][MPM__SUPPORT])
+                             mpm_real V[3][MPM_SUPPORT])
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     const mpm_real cutoff = w->desc.mass_cutoff * w->body[r->body].point_mass;
@@ -908,31 +1111,109 @@ static inline void mpm__constrain(const mpm_world *w, const mpm_node *n, mpm_rea
     }
 }
 
+/* Momentum j to a node from outside. */
+static inline void mpm__give(mpm_world *w, mpm_node *n, const mpm_real *j)
+{
+    int d;
+    for (d = 0; d < 3; d++) {
+        n->momentum[d] += j[d];
+        n->force[d] += j[d] / w->dt;
+        n->reaction[d] += j[d];
+        w->ledger.impulse[d] += (double)j[d];
+    }
+}
+
+MPM_API void mpm_node_push(mpm_world *w, int32_t slot, mpm_real j[3])
+{
+    mpm__constrain(w, &w->node[slot], j, NULL);
+    mpm__give(w, &w->node[slot], j);
+}
+
 /* A rigid wall: takes the momentum into it away, and through friction part of the tangential. */
-static inline void mpm__walls(mpm_world *w, mpm_node *n, mpm_real dt)
+static inline void mpm__walls(mpm_world *w, mpm_node *n)
 {
     int s, d;
     for (s = 0; s < 6; s++) {
         const int axis = s / 2;
-        mpm_real out, slip = 0, keep, jn, change[3] = {0, 0, 0};
+        mpm_real out, slip = 0, keep, jn, j[3] = {0, 0, 0};
         if (!(n->flags >> s & 1) || w->desc.side[s] != MPM_SIDE_WALL) continue;
         out = (s & 1) ? -n->momentum[axis] : n->momentum[axis];
         if (out >= 0) continue;
         jn = -out;
-        change[axis] = -n->momentum[axis];
+        j[axis] = -n->momentum[axis];
         for (d = 0; d < 3; d++)
             if (d != axis) slip += n->momentum[d] * n->momentum[d];
         slip = mpm_sqrt(slip);
         keep = slip > w->desc.wall_friction * jn ? 1 - w->desc.wall_friction * jn / slip : 0;
+        for (d = 0; d < 3; d++)
+            if (d != axis) j[d] = (keep - 1) * n->momentum[d];
+        mpm__give(w, n, j);
+    }
+}
+
+/* ---- what extensions use ---------------------------------------------------------------------- */
+
+MPM_API void mpm_support_of(const mpm_world *w, const mpm_run *run, int32_t i, mpm_support *s)
+{
+    const int k = w->support[0], ky = w->support[1];
+    mpm__weights one;
+    int a, d;
+    mpm__weigh(w, run, i, 1, k, ky, &one);
+    mpm__products(&one, 0, k, ky, s->N);
+    mpm__gradients(&one, 0, k, ky, s->G);
+    s->count = k * ky * k;
+    s->slot = mpm__run_nodes(w, run);
+    for (a = 0; a < s->count; a++)
+        for (s->mirror[a] = 0, d = 0; d < 3; d++)
+            if (mpm__mirror(run, a, d, k, ky) < 0) s->mirror[a] = (uint8_t)(s->mirror[a] | 1 << d);
+}
+
+/* -1 where component d of node a of a support is that of its mirror image. */
+static inline mpm_real mpm__image(const mpm_support *s, int a, int d)
+{
+    return s->mirror[a] >> d & 1 ? MPM_R(-1.0) : MPM_R(1.0);
+}
+
+MPM_API void mpm_support_velocity(const mpm_world *w, const mpm_support *s, mpm_real v[3])
+{
+    int a, d;
+    v[0] = v[1] = v[2] = 0;
+    for (a = 0; a < s->count; a++) {
+        const mpm_node *n = &w->node[s->slot[a]];
+        if (!(n->mass > w->desc.mass_cutoff * w->body[n->body].point_mass)) continue;
+        for (d = 0; d < 3; d++) v[d] += s->N[a] * mpm__image(s, a, d) * n->momentum[d] / n->mass;
+    }
+}
+
+MPM_API void mpm_push(mpm_world *w, const mpm_support *s, const mpm_real f[3])
+{
+    int a, d;
+    for (a = 0; a < s->count; a++) {
+        mpm_node *n = &w->node[s->slot[a]];
+        if (!(n->mass > w->desc.mass_cutoff * w->body[n->body].point_mass)) continue;
         for (d = 0; d < 3; d++) {
-            mpm_real before = n->momentum[d];
-            if (d != axis) change[d] = (keep - 1) * before;
-            n->momentum[d] += change[d];
-            n->force[d] += change[d] / dt;
-            n->reaction[d] += change[d];
-            w->ledger.impulse[d] += (double)change[d];
+            const mpm_real j = s->N[a] * mpm__image(s, a, d) * f[d] * w->dt;
+            n->force[d] += j / w->dt;
+            w->ledger.impulse[d] += (double)j;
+            w->ledger.work += (double)(j * (n->momentum[d] + j / 2) / n->mass);
         }
     }
+}
+
+MPM_API int32_t mpm_node_find(const mpm_world *w, int32_t index, int32_t body)
+{
+    int32_t s = index >= 0 && (size_t)index < mpm__grid_nodes(w) ? w->head[index] : -1;
+    while (s >= 0 && w->node[s].body != body) s = w->node[s].next;
+    return s;
+}
+
+MPM_API void mpm_node_position(const mpm_world *w, const mpm_node *n, mpm_real x[3])
+{
+    const int32_t nx = w->nodes_per_axis[0], ny = w->nodes_per_axis[1];
+    const int32_t at[3] = {n->index % nx, n->index / nx % ny, n->index / nx / ny};
+    int d;
+    for (d = 0; d < 3; d++) x[d] = w->desc.origin[d] + (mpm_real)(at[d] - w->ghost) * w->desc.cell;
+    if (mpm__flat(&w->desc)) x[1] = 0;
 }
 
 /* ---- to the nodes ------------------------------------------------------------------------- */
@@ -941,7 +1222,7 @@ MPM__KERNEL void mpm__p2g_run(mpm_world *w, const mpm_run *r, int k, int ky, int
 {
     const mpm_points *q = &w->points;
     const int32_t *slot = mpm__run_nodes(w, r);
-    mpm_real M[MPM__SUPPORT] = {0}, P[3][MPM__SUPPORT] = {{0}}, N[MPM__SUPPORT];
+    mpm_real M[MPM_SUPPORT] = {0}, P[3][MPM_SUPPORT] = {{0}}, N[MPM_SUPPORT];
     mpm__weights s;
     int32_t at;
     int n, p, a;
@@ -977,7 +1258,7 @@ MPM_API void mpm_p2g(mpm_world *w)
 MPM__KERNEL void mpm__forces_run(mpm_world *w, const mpm_run *r, int k, int ky, int hoop)
 {
     const mpm_points *q = &w->points;
-    mpm_real F[3][MPM__SUPPORT] = {{0}}, G[3][MPM__SUPPORT], N[MPM__SUPPORT];
+    mpm_real F[3][MPM_SUPPORT] = {{0}}, G[3][MPM_SUPPORT], N[MPM_SUPPORT];
     mpm__weights s;
     int32_t at;
     int n, p, a;
@@ -1007,13 +1288,14 @@ MPM__KERNEL void mpm__forces_run(mpm_world *w, const mpm_run *r, int k, int ky, 
 /* Viscous dampers of one run: traction -a rho Vp v_n - b rho Vs v_t at the points of the damped
    faces, times the area they represent: of the true face, their share of its mass. The velocity is
    the grid's at the point, so that the damper takes energy and nothing else. */
-static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r, mpm_real dt)
+static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r)
 {
+    const mpm_real dt = w->dt;
     const int k = w->support[0], ky = w->support[1];
     const mpm_points *q = &w->points;
     const mpm_body *b = &w->body[r->body];
     const mpm_body_desc *d = &b->desc;
-    mpm_real F[3][MPM__SUPPORT] = {{0}}, V[3][MPM__SUPPORT], N[MPM__SUPPORT];
+    mpm_real F[3][MPM_SUPPORT] = {{0}}, V[3][MPM_SUPPORT], N[MPM_SUPPORT];
     mpm__weights s;
     int32_t at;
     int n, p, a, c, face, any = 0;
@@ -1053,38 +1335,38 @@ static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r, mpm_real dt)
 
 /* With ghosts, internal forces cross a symmetry plane: what the nodes of this side then sum to along
    its normal comes from the mirror image. */
-static inline void mpm__mirror_force(mpm_world *w, mpm_real dt)
+static inline void mpm__mirror_force(mpm_world *w)
 {
     const mpm_side *side = w->desc.side;
     int32_t i;
     int d;
     for (d = 0; d < 3; d++)
         if (w->ghost && (side[2 * d] == MPM_SIDE_SYMMETRY || side[2 * d + 1] == MPM_SIDE_SYMMETRY))
-            for (i = 0; i < w->nodes; i++) w->ledger.impulse[d] += (double)(w->node[i].force[d] * dt);
+            for (i = 0; i < w->nodes; i++) w->ledger.impulse[d] += (double)(w->node[i].force[d] * w->dt);
 }
 
-MPM_API void mpm_forces(mpm_world *w, mpm_real dt)
+MPM_API void mpm_forces(mpm_world *w)
 {
-    const mpm_real *g = w->desc.gravity;
+    const mpm_real *g = w->desc.gravity, dt = w->dt;
     int32_t i;
     int d;
 #define MPM__CALL(k, ky, hoop) mpm__forces_run(w, run, k, ky, hoop)
     MPM__EACH_RUN(w, MPM__CALL);
 #undef MPM__CALL
-    mpm__mirror_force(w, dt);
+    mpm__mirror_force(w);
     for (i = 0; i < w->runs; i++)
-        if (w->body[w->run[i].body].desc.absorb) mpm__absorb_run(w, &w->run[i], dt);
+        if (w->body[w->run[i].body].desc.absorb) mpm__absorb_run(w, &w->run[i]);
     if (g[0] != 0 || g[1] != 0 || g[2] != 0)
         for (i = 0; i < w->nodes; i++)
             for (d = 0; d < 3; d++) {
                 mpm_node *n = &w->node[i];
                 n->force[d] += n->mass * g[d];
                 w->ledger.impulse[d] += (double)(n->mass * g[d] * dt);
-                w->ledger.gravity += (double)((n->momentum[d] + MPM_R(0.5) * n->mass * g[d] * dt) * g[d] * dt);
+                w->ledger.work += (double)((n->momentum[d] + MPM_R(0.5) * n->mass * g[d] * dt) * g[d] * dt);
             }
 }
 
-MPM_API void mpm_grid_update(mpm_world *w, mpm_real dt)
+MPM_API void mpm_grid_update(mpm_world *w)
 {
     int32_t i;
     int d;
@@ -1093,10 +1375,10 @@ MPM_API void mpm_grid_update(mpm_world *w, mpm_real dt)
         if (n->flags) {
             double removed[3] = {0, 0, 0};
             mpm__constrain(w, n, n->force, removed);
-            for (d = 0; d < 3; d++) w->ledger.impulse[d] -= removed[d] * (double)dt;
+            for (d = 0; d < 3; d++) w->ledger.impulse[d] -= removed[d] * (double)w->dt;
         }
-        for (d = 0; d < 3; d++) n->momentum[d] += n->force[d] * dt;
-        if (n->flags) mpm__walls(w, n, dt);
+        for (d = 0; d < 3; d++) n->momentum[d] += n->force[d] * w->dt;
+        if (n->flags) mpm__walls(w, n);
     }
 }
 
@@ -1110,7 +1392,7 @@ static inline void mpm__gradient_run(mpm_world *w, const mpm_run *r)
 {
     const int k = w->support[0], ky = w->support[1], hoop = w->desc.geometry == MPM_AXISYMMETRIC;
     const mpm_points *q = &w->points;
-    mpm_real F[3][MPM__SUPPORT] = {{0}}, G[3][MPM__SUPPORT], N[MPM__SUPPORT];
+    mpm_real F[3][MPM_SUPPORT] = {{0}}, G[3][MPM_SUPPORT], N[MPM_SUPPORT];
     mpm__weights s;
     int32_t at;
     int n, p, a, d;
@@ -1128,7 +1410,11 @@ static inline void mpm__gradient_run(mpm_world *w, const mpm_run *r)
             }
         }
     }
-    mpm__scatter(w, r, k, ky, MPM__GRADIENT, F);
+    for (a = 0; a < k * ky * k; a++) {
+        const int32_t touch = w->node[mpm__run_nodes(w, r)[a]].touch;
+        if (touch < 0) continue;
+        for (d = 0; d < 3; d++) w->touch[touch].gradient[d] += F[d][a] * mpm__mirror(r, a, d, k, ky);
+    }
 }
 
 /* n = g / |g|; 0 if g is no direction at all: shorter than round-off beside `scale`. */
@@ -1151,24 +1437,26 @@ static inline int mpm__unit(const mpm_real *g, mpm_real scale, mpm_real *n)
 static inline void mpm__pair_normal(const mpm_world *w, mpm_pair *pair)
 {
     const mpm_node *a = &w->node[pair->a], *b = &w->node[pair->b];
+    const mpm_real *sum_a = w->touch[a->touch].gradient, *sum_b = w->touch[b->touch].gradient;
     const mpm_real ra = w->body[a->body].desc.density, rb = w->body[b->body].desc.density;
+    const mpm_normal_rule rule = pair->rule->normal;
     const mpm_real tiny = MPM_R(1024.0) * MPM_EPSILON / w->desc.cell;
     mpm_real ga[3], gb[3], mean[3], na[3] = {0, 0, 0}, nb[3] = {0, 0, 0}, la = 0, lb = 0;
     int d, has_a, has_b, use_b = 1;
     for (d = 0; d < 3; d++) {
-        ga[d] = a->gradient[d] / ra;
-        gb[d] = -b->gradient[d] / rb;
+        ga[d] = sum_a[d] / ra;
+        gb[d] = -sum_b[d] / rb;
         mean[d] = ga[d] + gb[d];
         la += ga[d] * ga[d];
         lb += gb[d] * gb[d];
     }
     has_a = mpm__unit(ga, tiny * a->mass / ra, na);
     has_b = mpm__unit(gb, tiny * b->mass / rb, nb);
-    if (w->desc.normal == MPM_NORMAL_MVG) use_b = lb >= la;
-    if (w->desc.normal == MPM_NORMAL_AVERAGE &&
+    if (rule == MPM_NORMAL_MVG) use_b = lb >= la;
+    if (rule == MPM_NORMAL_AVERAGE &&
         mpm__unit(mean, tiny * (a->mass / ra + b->mass / rb), pair->normal))
         return;
-    if (w->desc.normal == MPM_NORMAL_FIXED) {
+    if (rule == MPM_NORMAL_FIXED) {
         na[0] = na[1] = nb[0] = nb[1] = 0;
         na[2] = nb[2] = -1; /* the higher-numbered body, the substrate, lies below */
         has_a = has_b = 1;
@@ -1241,13 +1529,13 @@ static inline void mpm__show(mpm_world *w, int32_t slot, int32_t i, const mpm_re
 {
     const int32_t index = w->node[slot].index;
     int32_t j;
-    for (j = w->node[slot].pair; j < w->pairs && w->node[w->pair[j].a].index == index; j++) {
+    for (j = w->touch[w->node[slot].touch].pair; j < w->pairs && w->node[w->pair[j].a].index == index; j++) {
         mpm_pair *pair = &w->pair[j];
         const int of_b = pair->b == slot;
         if (!of_b && pair->a != slot) continue;
         if (fit) {
-            mpm__plane_point(&w->plane[j], of_b, x);
-        } else {
+            if (pair->rule->normal == MPM_NORMAL_LOGISTIC) mpm__plane_point(&w->plane[j], of_b, x);
+        } else if (pair->rule->touch) {
             const mpm_real *n = pair->normal, radius = mpm__point_radius(w, i);
             const mpm_real along = (x[0] * n[0] + x[1] * n[1] + x[2] * n[2]) * w->desc.cell;
             if (of_b) pair->low = along - radius < pair->low ? along - radius : pair->low;
@@ -1263,7 +1551,7 @@ static inline void mpm__show_run(mpm_world *w, const mpm_run *r, int fit)
     const int k = w->support[0], ky = w->support[1];
     const int32_t *slot = mpm__run_nodes(w, r);
     const mpm_real inv = 1 / w->desc.cell;
-    mpm_real N[MPM__SUPPORT];
+    mpm_real N[MPM_SUPPORT];
     mpm__weights s;
     int32_t at;
     int n, p, a, d;
@@ -1304,7 +1592,7 @@ static inline void mpm__plane_normals(mpm_world *w)
     }
     for (i = 0; i < w->pairs; i++) {
         mpm_real normal[3];
-        if (mpm__unit(w->plane[i].phi, 1024 * MPM_EPSILON, normal))
+        if (w->pair[i].rule->normal == MPM_NORMAL_LOGISTIC && mpm__unit(w->plane[i].phi, 1024 * MPM_EPSILON, normal))
             for (d = 0; d < 3; d++) w->pair[i].normal[d] = normal[d];
     }
 }
@@ -1319,12 +1607,13 @@ static inline void mpm__separations(mpm_world *w)
     }
     for (i = 0; i < w->runs; i++)
         if (w->run[i].flags & MPM_NODE_CONTACT) mpm__show_run(w, &w->run[i], 0);
-    for (i = 0; i < w->pairs; i++) w->pair[i].separation = w->pair[i].low - w->pair[i].high;
+    for (i = 0; i < w->pairs; i++)
+        if (w->pair[i].rule->touch) w->pair[i].separation = w->pair[i].low - w->pair[i].high;
 }
 
 /* Whether a body weighs enough at a node to be in contact there. In axisymmetry points are rings, as
    heavy as their radius makes them; on a symmetry plane half of a node lies behind the mirror. */
-static inline int mpm__counts_in_contact(const mpm_world *w, const mpm_node *n)
+static inline int mpm__counts_in_contact(const mpm_world *w, const mpm_contact *rule, const mpm_node *n)
 {
     const mpm_body *b = &w->body[n->body];
     const int rings = w->desc.geometry == MPM_AXISYMMETRIC;
@@ -1337,8 +1626,32 @@ static inline int mpm__counts_in_contact(const mpm_world *w, const mpm_node *n)
     }
     for (s = rings ? 2 : 0; s < 6; s++)
         if ((n->flags >> s & 1) && w->desc.side[s] == MPM_SIDE_SYMMETRY) point /= 2;
-    if (w->desc.contact == MPM_CONTACT_WELD) point = 0; /* one velocity everywhere, without exception */
-    return n->mass > w->desc.contact_cutoff * point && n->mass > w->desc.mass_cutoff * b->point_mass;
+    if (rule->law == MPM_CONTACT_WELD) point = 0; /* one velocity everywhere, without exception */
+    return n->mass > rule->cutoff * point && n->mass > w->desc.mass_cutoff * b->point_mass;
+}
+
+MPM_API const mpm_contact *mpm_contact_of(const mpm_world *w, int32_t a, int32_t b)
+{
+    int32_t i;
+    for (i = w->rules - 1; i >= 0; i--) {
+        const mpm_rule *r = &w->rule[i];
+        if (((r->a < 0 || r->a == a) && (r->b < 0 || r->b == b)) || ((r->a < 0 || r->a == b) && (r->b < 0 || r->b == a)))
+            return &r->contact;
+    }
+    return &w->desc.contact;
+}
+
+/* Makes a slot one of a contact node. */
+static inline void mpm__touch_begin(mpm_world *w, int32_t slot, int32_t pair)
+{
+    mpm_node *n = &w->node[slot];
+    mpm_touch *t;
+    if (n->touch >= 0) return;
+    n->flags |= MPM_NODE_CONTACT;
+    n->touch = w->touches++;
+    t = &w->touch[n->touch];
+    memset(t, 0, sizeof *t);
+    t->pair = pair;
 }
 
 /* Lists the pairs of slots that meet at a grid node whose first slot is i. */
@@ -1348,49 +1661,92 @@ static inline void mpm__pairs_at(mpm_world *w, int32_t i)
     int32_t a, b;
     for (b = i; b >= 0; b = w->node[b].next)
         for (a = w->node[b].next; a >= 0; a = w->node[a].next) {
+            const mpm_contact *rule = mpm_contact_of(w, w->node[a].body, w->node[b].body);
             mpm_pair *pair = &w->pair[w->pairs];
-            if (!mpm__counts_in_contact(w, &w->node[a]) || !mpm__counts_in_contact(w, &w->node[b])) continue;
+            if (!mpm__counts_in_contact(w, rule, &w->node[a]) || !mpm__counts_in_contact(w, rule, &w->node[b])) continue;
             memset(pair, 0, sizeof *pair);
             pair->a = a;
             pair->b = b;
-            w->node[a].flags |= MPM_NODE_CONTACT;
-            w->node[b].flags |= MPM_NODE_CONTACT;
-            w->node[a].pair = w->node[b].pair = first;
+            pair->rule = rule;
+            mpm__touch_begin(w, a, first);
+            mpm__touch_begin(w, b, first);
             w->pairs++;
         }
 }
 
-MPM_API void mpm_contact_find(mpm_world *w)
+/* Marks the runs that touch a contact node. */
+static inline void mpm__contact_runs(mpm_world *w)
 {
     const int reach = w->support[0] * w->support[1] * w->support[2];
     int32_t i;
     int s;
-    w->pairs = 0;
+    for (i = 0; i < w->runs; i++)
+        for (s = 0; s < reach; s++)
+            if (w->node[w->slot[(size_t)i * (size_t)reach + (size_t)s]].touch >= 0)
+                w->run[i].flags |= MPM_NODE_CONTACT;
+}
+
+MPM_API void mpm_contact_find(mpm_world *w)
+{
+    int32_t i;
+    int planes = 0, gaps = 0;
+    w->pairs = w->touches = 0;
     for (i = 0; i < w->nodes; i++)
         if (w->head[w->node[i].index] == i && w->node[i].next >= 0) mpm__pairs_at(w, i);
     if (w->pairs == 0) return;
-    for (i = 0; i < w->runs; i++)
-        for (s = 0; s < reach; s++)
-            if (w->node[w->slot[(size_t)i * (size_t)reach + (size_t)s]].flags & MPM_NODE_CONTACT)
-                w->run[i].flags |= MPM_NODE_CONTACT;
+    mpm__contact_runs(w);
     for (i = 0; i < w->runs; i++)
         if (w->run[i].flags & MPM_NODE_CONTACT) mpm__gradient_run(w, &w->run[i]);
     for (i = 0; i < w->pairs; i++) {
         mpm_pair *pair = &w->pair[i];
-        mpm__constrain(w, &w->node[pair->a], w->node[pair->a].gradient, NULL);
-        mpm__constrain(w, &w->node[pair->b], w->node[pair->b].gradient, NULL);
+        const mpm_node *a = &w->node[pair->a], *b = &w->node[pair->b];
+        mpm__constrain(w, a, w->touch[a->touch].gradient, NULL);
+        mpm__constrain(w, b, w->touch[b->touch].gradient, NULL);
         mpm__pair_normal(w, pair);
+        planes |= pair->rule->normal == MPM_NORMAL_LOGISTIC;
+        gaps |= pair->rule->touch;
     }
-    if (w->desc.normal == MPM_NORMAL_LOGISTIC && w->plane) mpm__plane_normals(w);
-    if (w->desc.separation) mpm__separations(w);
+    if (planes) mpm__plane_normals(w);
+    if (gaps) mpm__separations(w);
 }
 
-/* Momentum that a must gain and b lose so that both move together (A 3.31, times dt). */
-static inline void mpm__sticking(const mpm_node *a, const mpm_node *b, mpm_real *j)
+MPM_API mpm_real mpm_pair_stick(const mpm_world *w, const mpm_pair *p, mpm_real j[3])
 {
+    const mpm_node *a = &w->node[p->a], *b = &w->node[p->b];
+    mpm_real toward = 0;
     int d;
-    for (d = 0; d < 3; d++)
+    for (d = 0; d < 3; d++) {
         j[d] = (a->mass * b->momentum[d] - b->mass * a->momentum[d]) / (a->mass + b->mass);
+        toward -= j[d] * p->normal[d];
+    }
+    return toward;
+}
+
+MPM_API double mpm_pair_area(const mpm_world *w, const mpm_pair *p)
+{
+    const mpm_node *a = &w->node[p->a], *b = &w->node[p->b];
+    const mpm_real *ga = w->touch[a->touch].gradient, *gb = w->touch[b->touch].gradient;
+    double one = 0, two = 0;
+    int d;
+    for (d = 0; d < 3; d++) {
+        one += (double)(ga[d] * p->normal[d] / w->body[a->body].desc.density);
+        two -= (double)(gb[d] * p->normal[d] / w->body[b->body].desc.density);
+    }
+    if (two < one) one = two;
+    return one < 0 ? 0 : one;
+}
+
+MPM_API void mpm_pair_push(mpm_world *w, mpm_pair *p, const mpm_real j[3])
+{
+    mpm_node *a = &w->node[p->a], *b = &w->node[p->b];
+    int d;
+    for (d = 0; d < 3; d++) {
+        p->impulse[d] += j[d];
+        a->momentum[d] += j[d];
+        b->momentum[d] -= j[d];
+        a->force[d] += j[d] / w->dt;
+        b->force[d] -= j[d] / w->dt;
+    }
 }
 
 /* Turns the sticking impulse into one with Coulomb friction: the normal part whole, the tangential
@@ -1409,53 +1765,53 @@ static inline void mpm__coulomb(const mpm_real *normal, mpm_real mu, mpm_real *j
     for (d = 0; d < 3; d++) j[d] = jn * normal[d] + (mu > 0 ? keep * t[d] : 0);
 }
 
-/* The share of its separating momentum by which a pair of nodal D is held. */
-static inline mpm_real mpm__held_share(mpm_real D, mpm_real width)
+/* Turns the sticking impulse into that of a hold: its share, of at most `limit`. */
+static inline void mpm__hold(const mpm_pair *p, mpm_real *j)
 {
-    mpm_real share;
-    if (!(width > 0)) return D >= 1 ? MPM_R(1.0) : MPM_R(0.0);
-    share = (D - 1) / width + MPM_R(0.5);
-    return share < 0 ? 0 : share > 1 ? 1 : share;
+    mpm_real size, keep = p->hold;
+    int d;
+    if (p->limit > 0) {
+        size = keep * mpm_sqrt(j[0] * j[0] + j[1] * j[1] + j[2] * j[2]);
+        if (size > p->limit) keep *= p->limit / size;
+    }
+    for (d = 0; d < 3; d++) j[d] *= keep;
 }
 
-MPM_API void mpm_contact_apply(mpm_world *w, mpm_real dt)
+/* The impulse on a that the rule of a pair asks for; 0 for none. */
+static inline int mpm__contact_impulse(const mpm_world *w, mpm_pair *p, mpm_real *j)
+{
+    const mpm_contact *c = p->rule;
+    int approaching;
+    if (c->law == MPM_CONTACT_NONE) return 0;
+    if (c->law == MPM_CONTACT_USER) return c->fn(c->context, w, p, j);
+    approaching = mpm_pair_stick(w, p, j) > 0 && !(c->touch && p->separation > 0);
+    p->held = !approaching && p->hold > 0;
+    if (c->law == MPM_CONTACT_WELD) return 1;
+    if (approaching && c->law == MPM_CONTACT_FRICTION) mpm__coulomb(p->normal, c->friction, j);
+    if (p->held) mpm__hold(p, j);
+    return approaching || p->held;
+}
+
+MPM_API void mpm_contact_apply(mpm_world *w)
 {
     int32_t i;
-    int d;
     w->held = 0;
-    if (w->desc.contact == MPM_CONTACT_NONE) return;
     for (i = 0; i < w->pairs; i++) {
-        mpm_pair *pair = &w->pair[i];
-        mpm_node *a = &w->node[pair->a], *b = &w->node[pair->b];
-        mpm_real j[3], toward = 0, share;
-        int approaching, bonded;
-        mpm__sticking(a, b, j);
-        for (d = 0; d < 3; d++) toward -= j[d] * pair->normal[d];
-        approaching = toward > 0; /* (m_b P_a - m_a P_b) . n > 0 (A 3.29) */
-        if (w->desc.separation && pair->separation > 0) approaching = 0;
-        share = approaching ? 0 : mpm__held_share(pair->bond, w->desc.bond_width);
-        bonded = share > 0;
-        if (!approaching && !bonded && w->desc.contact != MPM_CONTACT_WELD) continue;
-        if (approaching && w->desc.contact == MPM_CONTACT_FRICTION) mpm__coulomb(pair->normal, w->desc.friction, j);
-        for (d = 0; d < 3 && bonded && w->desc.contact != MPM_CONTACT_WELD; d++) j[d] *= share;
-        mpm__constrain(w, a, j, NULL);
-        for (d = 0; d < 3; d++) {
-            pair->impulse[d] = j[d];
-            a->momentum[d] += j[d];
-            b->momentum[d] -= j[d];
-            a->force[d] += j[d] / dt;
-            b->force[d] -= j[d] / dt;
-        }
-        pair->held = bonded;
-        w->held += bonded;
+        mpm_pair *p = &w->pair[i];
+        mpm_real j[3];
+        if (!mpm__contact_impulse(w, p, j)) continue;
+        mpm__constrain(w, &w->node[p->a], j, NULL);
+        mpm_pair_push(w, p, j);
+        w->held += p->held;
     }
 }
 
 /* ---- back to the points ---------------------------------------------------------------------- */
 
-MPM__KERNEL void mpm__g2p_run(mpm_world *w, const mpm_run *r, int k, int ky, mpm_real dt)
+MPM__KERNEL void mpm__g2p_run(mpm_world *w, const mpm_run *r, int k, int ky)
 {
-    mpm_real A[3][MPM__SUPPORT];
+    const mpm_real dt = w->dt;
+    mpm_real A[3][MPM_SUPPORT];
     mpm__weights s;
     int32_t at;
     int n, p, d;
@@ -1471,10 +1827,10 @@ MPM__KERNEL void mpm__g2p_run(mpm_world *w, const mpm_run *r, int k, int ky, mpm
 
 /* Points that reach through a symmetry plane take a ghost's acceleration with its sign turned: twice
    that share of their momentum comes from the mirror image. */
-static inline void mpm__mirror_run(mpm_world *w, const mpm_run *r, mpm_real dt)
+static inline void mpm__mirror_run(mpm_world *w, const mpm_run *r)
 {
     const int k = w->support[0], ky = w->support[1];
-    mpm_real A[3][MPM__SUPPORT], N[MPM__SUPPORT];
+    mpm_real A[3][MPM_SUPPORT], N[MPM_SUPPORT];
     mpm__weights s;
     int32_t at;
     int n, p, a, d;
@@ -1482,7 +1838,7 @@ static inline void mpm__mirror_run(mpm_world *w, const mpm_run *r, mpm_real dt)
     MPM__EACH_PIECE(r, at, n) {
         mpm__weigh(w, r, at, n, k, ky, &s);
         for (p = 0; p < n; p++) {
-            const mpm_real m = 2 * dt * w->points.mass[at + p];
+            const mpm_real m = 2 * w->dt * w->points.mass[at + p];
             mpm__products(&s, p, k, ky, N);
             for (d = 0; d < 3; d++)
                 for (a = 0; a < k * ky * k; a++)
@@ -1491,14 +1847,14 @@ static inline void mpm__mirror_run(mpm_world *w, const mpm_run *r, mpm_real dt)
     }
 }
 
-MPM_API void mpm_g2p(mpm_world *w, mpm_real dt)
+MPM_API void mpm_g2p(mpm_world *w)
 {
     int32_t i;
-#define MPM__CALL(k, ky, hoop) mpm__g2p_run(w, run, k, ky, dt)
+#define MPM__CALL(k, ky, hoop) mpm__g2p_run(w, run, k, ky)
     MPM__EACH_RUN(w, MPM__CALL);
 #undef MPM__CALL
     for (i = 0; i < w->runs; i++)
-        if (w->run[i].flags & 63) mpm__mirror_run(w, &w->run[i], dt);
+        if (w->run[i].flags & 63) mpm__mirror_run(w, &w->run[i]);
 }
 
 /* The mean nodal velocity of the step, through which nodal forces work on the points. */
@@ -1508,8 +1864,9 @@ static inline mpm_real mpm__mean_velocity(const mpm_node *n, int d, mpm_real dt)
 }
 
 /* Energy lost in contact, in bonds and at walls. */
-static inline void mpm__account(mpm_world *w, mpm_real dt)
+static inline void mpm__account(mpm_world *w)
 {
+    const mpm_real dt = w->dt;
     int32_t i;
     int d;
     for (i = 0; i < w->pairs; i++) {
@@ -1518,7 +1875,7 @@ static inline void mpm__account(mpm_world *w, mpm_real dt)
         double loss = 0;
         for (d = 0; d < 3; d++)
             loss -= (double)(pair->impulse[d] * (mpm__mean_velocity(a, d, dt) - mpm__mean_velocity(b, d, dt)));
-        if (pair->held) w->ledger.bond += loss;
+        if (pair->held) w->ledger.hold += loss;
         else w->ledger.contact += loss;
     }
     for (i = 0; i < w->nodes; i++) {
@@ -1529,7 +1886,7 @@ static inline void mpm__account(mpm_world *w, mpm_real dt)
     }
 }
 
-MPM_API void mpm_musl(mpm_world *w, mpm_real dt)
+MPM_API void mpm_musl(mpm_world *w)
 {
     int32_t i;
     int d;
@@ -1540,7 +1897,7 @@ MPM_API void mpm_musl(mpm_world *w, mpm_real dt)
         mpm_node *n = &w->node[i];
         for (d = 0; d < 3; d++) n->velocity[d] = n->mass > 0 ? n->velocity[d] / n->mass : 0;
     }
-    mpm__account(w, dt);
+    mpm__account(w);
     for (i = 0; i < w->nodes; i++) {
         mpm_node *n = &w->node[i];
         int s;
@@ -1555,10 +1912,10 @@ MPM_API void mpm_musl(mpm_world *w, mpm_real dt)
 
 /* Strain and rotation increments of a piece of a run (A 3.35). */
 MPM__KERNEL void mpm__strain_piece(const mpm_world *w, const mpm_run *r, int32_t at, int n, int k, int ky, int hoop,
-                                   mpm_real dt, mpm_real V[3][MPM__SUPPORT], mpm_real (*e)[MPM_BLOCK],
+                                   mpm_real V[3][MPM_SUPPORT], mpm_real (*e)[MPM_BLOCK],
                                    mpm_real (*spin)[MPM_BLOCK], int to)
 {
-    const mpm_real *radius = w->points.x[0] + at;
+    const mpm_real *radius = w->points.x[0] + at, dt = w->dt;
     mpm__weights s;
     int p;
     mpm__weigh(w, r, at, n, k, ky, &s);
@@ -1580,7 +1937,7 @@ MPM__KERNEL void mpm__strain_piece(const mpm_world *w, const mpm_run *r, int32_t
 }
 
 /* Density (A 3.36), then the material, for points [first, first + n) whose strains are ready. */
-static inline mpm_status mpm__constitute(mpm_world *w, const mpm_body *body, int32_t first, int n, mpm_real dt,
+static inline mpm_status mpm__constitute(mpm_world *w, const mpm_body *body, int32_t first, int n,
                                          mpm_real (*e)[MPM_BLOCK], mpm_real (*spin)[MPM_BLOCK])
 {
     mpm_points *q = &w->points;
@@ -1602,7 +1959,7 @@ static inline mpm_status mpm__constitute(mpm_world *w, const mpm_body *body, int
         }
     if (!body->desc.stress) return MPM_OK;
     b.count = n;
-    b.dt = dt;
+    b.dt = w->dt;
     b.cell = w->desc.cell;
     for (i = 0; i < 6; i++) b.strain[i] = e[i];
     for (i = 0; i < 3; i++) b.spin[i] = spin[i];
@@ -1623,10 +1980,9 @@ static inline mpm_status mpm__constitute(mpm_world *w, const mpm_body *body, int
 }
 
 /* Strain increments of all points of one body, a block at a time. */
-MPM__KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, int32_t run, int32_t runs, int k, int ky, int hoop,
-                                        mpm_real dt)
+MPM__KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, int32_t run, int32_t runs, int k, int ky, int hoop)
 {
-    mpm_real e[6][MPM_BLOCK], spin[3][MPM_BLOCK], V[3][MPM__SUPPORT];
+    mpm_real e[6][MPM_BLOCK], spin[3][MPM_BLOCK], V[3][MPM_SUPPORT];
     int32_t first = w->body[body].first;
     int filled = 0;
     mpm_status s;
@@ -1638,11 +1994,11 @@ MPM__KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, int32_t run,
             int n = (int)(r->first + r->count - at);
             if (n > MPM_BLOCK - filled) n = MPM_BLOCK - filled;
             if (n > MPM__LANES) n = MPM__LANES;
-            mpm__strain_piece(w, r, at, n, k, ky, hoop, dt, V, e, spin, filled);
+            mpm__strain_piece(w, r, at, n, k, ky, hoop, V, e, spin, filled);
             at += n;
             filled += n;
             if (filled < MPM_BLOCK && !(run + 1 == runs && at == r->first + r->count)) continue;
-            if ((s = mpm__constitute(w, &w->body[body], first, filled, dt, e, spin)) < 0) return s;
+            if ((s = mpm__constitute(w, &w->body[body], first, filled, e, spin)) < 0) return s;
             first += filled;
             filled = 0;
         }
@@ -1650,27 +2006,28 @@ MPM__KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, int32_t run,
     return MPM_OK;
 }
 
-MPM_API mpm_status mpm_stress(mpm_world *w, mpm_real dt)
+MPM_API mpm_status mpm_stress(mpm_world *w)
 {
     const int hoop = w->desc.geometry == MPM_AXISYMMETRIC, flat = mpm__flat(&w->desc);
     int32_t b, from = 0, to = 0;
     mpm_status s;
     for (b = 0; b < w->bodies; b++, from = to) {
         while (to < w->runs && w->run[to].body == b) to++;
-        if (!flat && !w->ghost) s = mpm__stress_body(w, b, from, to, 2, 2, 0, dt);
-        else if (!flat) s = mpm__stress_body(w, b, from, to, 3, 3, 0, dt);
-        else if (!w->ghost && !hoop) s = mpm__stress_body(w, b, from, to, 2, 1, 0, dt);
-        else if (!w->ghost) s = mpm__stress_body(w, b, from, to, 2, 1, 1, dt);
-        else if (!hoop) s = mpm__stress_body(w, b, from, to, 3, 1, 0, dt);
-        else s = mpm__stress_body(w, b, from, to, 3, 1, 1, dt);
+        if (!flat && !w->ghost) s = mpm__stress_body(w, b, from, to, 2, 2, 0);
+        else if (!flat) s = mpm__stress_body(w, b, from, to, 3, 3, 0);
+        else if (!w->ghost && !hoop) s = mpm__stress_body(w, b, from, to, 2, 1, 0);
+        else if (!w->ghost) s = mpm__stress_body(w, b, from, to, 2, 1, 1);
+        else if (!hoop) s = mpm__stress_body(w, b, from, to, 3, 1, 0);
+        else s = mpm__stress_body(w, b, from, to, 3, 1, 1);
         if (s < 0) return s;
     }
     return MPM_OK;
 }
 
-MPM__KERNEL void mpm__move_run(mpm_world *w, const mpm_run *r, int k, int ky, mpm_real dt)
+MPM__KERNEL void mpm__move_run(mpm_world *w, const mpm_run *r, int k, int ky)
 {
-    mpm_real V[3][MPM__SUPPORT];
+    const mpm_real dt = w->dt;
+    mpm_real V[3][MPM_SUPPORT];
     mpm__weights s;
     int32_t at;
     int n, p, d;
@@ -1684,12 +2041,12 @@ MPM__KERNEL void mpm__move_run(mpm_world *w, const mpm_run *r, int k, int ky, mp
     }
 }
 
-MPM_API void mpm_move(mpm_world *w, mpm_real dt)
+MPM_API void mpm_move(mpm_world *w)
 {
-#define MPM__CALL(k, ky, hoop) mpm__move_run(w, run, k, ky, dt)
+#define MPM__CALL(k, ky, hoop) mpm__move_run(w, run, k, ky)
     MPM__EACH_RUN(w, MPM__CALL);
 #undef MPM__CALL
-    w->time += dt;
+    w->time += w->dt;
     w->steps++;
 }
 
@@ -1700,7 +2057,7 @@ static inline void mpm__grid_reset(mpm_world *w)
 {
     int32_t s;
     for (s = 0; s < w->nodes; s++) w->head[w->node[s].index] = -1;
-    w->nodes = w->runs = w->pairs = w->pairs_possible = 0;
+    w->nodes = w->runs = w->pairs = w->pairs_possible = w->touches = 0;
 }
 
 /* Puts point j's fields where point i's are, and the reverse. */
@@ -1839,6 +2196,7 @@ static inline int32_t mpm__slot(mpm_world *w, int32_t body, const int32_t *at)
     node->index = index;
     node->body = body;
     node->flags = sides;
+    node->touch = -1;
     node->next = w->head[index];
     w->head[index] = s;
     return s;
@@ -1874,30 +2232,18 @@ static inline int mpm__run_slots(mpm_world *w, mpm_run *r, int32_t *slot)
     return 1;
 }
 
-MPM_API mpm_status mpm_locate(mpm_world *w)
+/* Lists runs and slots for the points as they lie. */
+static inline mpm_status mpm__list_runs(mpm_world *w)
 {
     const int32_t nx = w->nodes_per_axis[0], ny = w->nodes_per_axis[1];
     const int reach = w->support[0] * w->support[1] * w->support[2];
-    int32_t b, i, runs;
-    long retired = w->retired;
-    mpm_status s;
-    mpm__grid_reset(w);
-    for (b = 0; b < w->bodies; b++) {
-        mpm__keys(w, &w->body[b]);
-        if ((s = mpm__retire(w, &w->body[b])) != MPM_OK) return s;
-    }
-    runs = mpm__count_runs(w);
-    if (runs > w->sorted_runs + w->sorted_runs / 4) {
-        for (b = 0; b < w->bodies; b++) mpm__sort(w, &w->body[b]);
-        runs = w->sorted_runs = mpm__count_runs(w);
-        w->sorts++;
-    }
+    int32_t b, i;
     for (b = 0; b < w->bodies; b++) {
         const int32_t to = w->body[b].first + w->body[b].active;
         for (i = w->body[b].first; i < to;) {
             mpm_run *r = &w->run[w->runs];
             const int32_t key = w->key[i];
-            if (w->runs == w->run_capacity) goto full;
+            if (w->runs == w->run_capacity) return MPM_ERR_FULL;
             r->first = i;
             while (++i < to && w->key[i] == key) {}
             r->count = i - r->first;
@@ -1906,16 +2252,51 @@ MPM_API mpm_status mpm_locate(mpm_world *w)
             r->base[2] = key / nx / ny;
             r->body = b;
             r->flags = 0;
-            if (!mpm__run_slots(w, r, w->slot + (size_t)w->runs * (size_t)reach)) goto full;
+            if (!mpm__run_slots(w, r, w->slot + (size_t)w->runs * (size_t)reach)) return MPM_ERR_FULL;
             w->runs++;
         }
     }
-    if (w->pairs_possible <= w->pair_capacity) return w->retired > retired ? MPM_RETIRED : MPM_OK;
-full:
-    i = w->pairs_possible;
+    return w->pairs_possible <= w->pair_capacity ? MPM_OK : MPM_ERR_FULL;
+}
+
+/* Sorts the points again once their order has cost a quarter more runs. */
+static inline void mpm__keep_order(mpm_world *w)
+{
+    int32_t b, runs = mpm__count_runs(w);
+    if (runs <= w->sorted_runs + w->sorted_runs / 4) return;
+    for (b = 0; b < w->bodies; b++) mpm__sort(w, &w->body[b]);
+    w->sorted_runs = mpm__count_runs(w);
+    w->sorts++;
+}
+
+/* mpm_locate with the room there is, or with what MPM_MALLOC gives. */
+static inline mpm_status mpm__locate(mpm_world *w)
+{
+    const long retired = w->retired;
+    int32_t b, possible;
+    mpm_status s;
     mpm__grid_reset(w);
-    w->pairs_possible = i;
-    return mpm_fail(&w->fault, MPM_ERR_FULL, "nodes", (mpm_real)w->node_capacity, -1);
+    for (b = 0; b < w->bodies; b++) {
+        mpm__keys(w, &w->body[b]);
+        if ((s = mpm__retire(w, &w->body[b])) != MPM_OK) return s;
+    }
+    mpm__keep_order(w);
+    while (mpm__list_runs(w) != MPM_OK) {
+        possible = w->pairs_possible;
+        mpm__grid_reset(w);
+        w->pairs_possible = possible;
+        if (!w->owns_work) return mpm_fail(&w->fault, MPM_ERR_FULL, "nodes", (mpm_real)w->node_capacity, -1);
+        if ((s = mpm_reserve(w, NULL, 0)) != MPM_OK) return s;
+    }
+    return w->retired > retired ? MPM_RETIRED : MPM_OK;
+}
+
+MPM_API mpm_status mpm_locate(mpm_world *w, mpm_real dt)
+{
+    mpm_status s = mpm_want(dt > 0, &w->fault, "dt", dt, -1);
+    if (s != MPM_OK) return s;
+    w->dt = dt;
+    return mpm__locate(w);
 }
 
 /* ---- looking at it --------------------------------------------------------------------------- */
@@ -2027,7 +2408,9 @@ MPM_API mpm_real mpm_wave_speed_s(mpm_real young, mpm_real poisson, mpm_real den
 
 /* ---- memory -------------------------------------------------------------------------------- */
 
-#define MPM__NAMED_FIELDS 20 /* x v mass density stress energy temperature plastic_* bond */
+/* How many arrays the named fields of the points take. */
+#define MPM__COMPONENTS(name, components, unit, text) +components
+#define MPM__NAMED_FIELDS (0 MPM_POINT_VECTORS(MPM__COMPONENTS) MPM_POINT_SCALARS(MPM__COMPONENTS))
 
 static inline void mpm__grid_sizes(mpm_world *w)
 {
@@ -2043,9 +2426,22 @@ static inline void mpm__grid_sizes(mpm_world *w)
     }
 }
 
-static inline size_t mpm__grid_nodes(const mpm_world *w)
+/* Points the members of w->points at their arrays, one after the other. */
+static inline void mpm__layout_fields(mpm_world *w)
 {
-    return (size_t)w->nodes_per_axis[0] * (size_t)w->nodes_per_axis[1] * (size_t)w->nodes_per_axis[2];
+    mpm_points *p = &w->points;
+    mpm_real *f = w->field;
+    int i;
+#define MPM__VECTOR(name, components, unit, text) \
+    for (i = 0; i < components; i++, f += w->stride) p->name[i] = f;
+#define MPM__SCALAR(name, components, unit, text) \
+    p->name = f;                                  \
+    f += w->stride;
+    MPM_POINT_VECTORS(MPM__VECTOR)
+    MPM_POINT_SCALARS(MPM__SCALAR)
+#undef MPM__VECTOR
+#undef MPM__SCALAR
+    for (i = 0; i < w->desc.user_fields; i++, f += w->stride) p->user[i] = f;
 }
 
 /* Lays out the first block: points and the grid table. Returns its size. Field strides are an odd
@@ -2054,11 +2450,10 @@ static inline size_t mpm__layout_points(mpm_world *w, char *base)
 {
     mpm_points *p = &w->points;
     size_t used = 0, n = (size_t)w->desc.points, lines = (n * sizeof(mpm_real) + MPM_ALIGN - 1) / MPM_ALIGN;
-    mpm_real *f;
-    int i;
     w->fields = MPM__NAMED_FIELDS + w->desc.user_fields;
     w->stride = (lines | 1) * (MPM_ALIGN / sizeof(mpm_real));
     w->body = (mpm_body *)mpm_carve(base, &used, (size_t)w->desc.bodies, sizeof(mpm_body));
+    w->rule = (mpm_rule *)mpm_carve(base, &used, (size_t)w->desc.rules, sizeof(mpm_rule));
     w->field = (mpm_real *)mpm_carve(base, &used, mpm_size_mul(w->stride, (size_t)w->fields), sizeof(mpm_real));
     w->scratch = (mpm_real *)mpm_carve(base, &used, w->stride, sizeof(mpm_real));
     p->id = (int32_t *)mpm_carve(base, &used, n, sizeof(int32_t));
@@ -2066,35 +2461,25 @@ static inline size_t mpm__layout_points(mpm_world *w, char *base)
     w->key = (int32_t *)mpm_carve(base, &used, n, sizeof(int32_t));
     w->order = (int32_t *)mpm_carve(base, &used, n, sizeof(int32_t));
     w->head = (int32_t *)mpm_carve(base, &used, mpm__grid_nodes(w), sizeof(int32_t));
-    if (!base) return used;
-    f = w->field;
-    for (i = 0; i < 3; i++) p->x[i] = f + (size_t)i * w->stride;
-    for (i = 0; i < 3; i++) p->v[i] = f + (size_t)(3 + i) * w->stride;
-    for (i = 0; i < 6; i++) p->stress[i] = f + (size_t)(6 + i) * w->stride;
-    p->mass = f + 12 * w->stride;
-    p->density = f + 13 * w->stride;
-    p->energy = f + 14 * w->stride;
-    p->temperature = f + 15 * w->stride;
-    p->plastic_strain = f + 16 * w->stride;
-    p->plastic_rate = f + 17 * w->stride;
-    p->plastic_work = f + 18 * w->stride;
-    p->bond = f + 19 * w->stride;
-    for (i = 0; i < w->desc.user_fields; i++) p->user[i] = f + (size_t)(MPM__NAMED_FIELDS + i) * w->stride;
+    if (base) mpm__layout_fields(w);
     return used;
 }
 
-/* Lays out the second block for a number of slots: there are as many runs as slots. */
+/* Lays out the second block for a number of slots: there are as many runs as slots, and far fewer pairs. */
 static inline size_t mpm__layout_work(mpm_world *w, char *base, int32_t nodes)
 {
+    const int32_t pairs = nodes / 4 + 64;
     size_t used = 0, n = (size_t)nodes;
     size_t reach = (size_t)w->support[0] * (size_t)w->support[1] * (size_t)w->support[2];
-    w->node_capacity = w->run_capacity = w->pair_capacity = nodes;
+    w->node_capacity = w->run_capacity = nodes;
+    w->pair_capacity = pairs;
     w->node = (mpm_node *)mpm_carve(base, &used, n, sizeof(mpm_node));
     w->run = (mpm_run *)mpm_carve(base, &used, n, sizeof(mpm_run));
     w->slot = (int32_t *)mpm_carve(base, &used, mpm_size_mul(n, reach), sizeof(int32_t));
-    w->pair = (mpm_pair *)mpm_carve(base, &used, n, sizeof(mpm_pair));
-    if (w->desc.normal == MPM_NORMAL_LOGISTIC)
-        w->plane = (mpm_plane *)mpm_carve(base, &used, n, sizeof(mpm_plane));
+    w->pair = (mpm_pair *)mpm_carve(base, &used, (size_t)pairs, sizeof(mpm_pair));
+    w->touch = (mpm_touch *)mpm_carve(base, &used, 2 * (size_t)pairs, sizeof(mpm_touch));
+    w->plane = (mpm_plane *)mpm_carve(base, &used, w->planes ? (size_t)pairs : 0, sizeof(mpm_plane));
+    if (!w->planes) w->plane = NULL;
     return used;
 }
 
@@ -2104,60 +2489,80 @@ static inline int32_t mpm__guess_nodes(const mpm_desc *d)
     return d->nodes ? d->nodes : d->points / 10 + 256;
 }
 
+/* Size of the first block, so that the second is aligned behind it. */
+static inline size_t mpm__points_bytes(const mpm_world *w)
+{
+    mpm_world copy = *w;
+    return mpm_size_add(mpm__layout_points(&copy, NULL), MPM_ALIGN) / MPM_ALIGN * MPM_ALIGN;
+}
+
+/* A world with a description and nothing else. */
+static inline void mpm__describe(mpm_world *w, const mpm_desc *d)
+{
+    w->desc = *d;
+    w->planes = d->contact.normal == MPM_NORMAL_LOGISTIC;
+    if (mpm__flat(d)) {
+        w->desc.cells[1] = 1;
+        w->desc.side[2] = w->desc.side[3] = MPM_SIDE_OPEN;
+    }
+    mpm__grid_sizes(w);
+}
+
 MPM_API size_t mpm_bytes(const mpm_desc *d)
 {
     mpm_world w;
     size_t n;
     if (mpm_desc_check(d, NULL) != MPM_OK) return 0;
     memset(&w, 0, sizeof w);
-    w.desc = *d;
-    mpm__grid_sizes(&w);
-    n = mpm__layout_points(&w, NULL);
+    mpm__describe(&w, d);
+    n = mpm__points_bytes(&w);
     if (n > (size_t)-1 - MPM_ALIGN) return 0;
-    n = mpm_size_add((n + MPM_ALIGN) / MPM_ALIGN * MPM_ALIGN, mpm__layout_work(&w, NULL, mpm__guess_nodes(d)));
+    n = mpm_size_add(n, mpm__layout_work(&w, NULL, mpm__guess_nodes(d)));
     return n == (size_t)-1 ? 0 : n;
 }
 
 MPM_API size_t mpm_bytes_used(const mpm_world *w) { return w->memory_bytes + w->work_bytes; }
 
+/* The two blocks, from the caller's memory or from MPM_MALLOC. */
+static inline int mpm__take_memory(mpm_world *w, void *memory, size_t points, size_t work)
+{
+    w->memory = memory ? memory : MPM_MALLOC(points);
+    w->owns_memory = w->owns_work = memory == NULL;
+    if (memory) w->work = (char *)memory + points;
+    else w->work = w->memory ? MPM_MALLOC(work) : NULL;
+    if (!w->work) mpm_free(w);
+    w->memory_bytes = points;
+    w->work_bytes = work;
+    return w->work != NULL;
+}
+
+/* An empty first block. */
+static inline void mpm__clear_points(mpm_world *w)
+{
+    size_t i, nodes = mpm__grid_nodes(w);
+    memset(w->memory, 0, w->memory_bytes);
+    mpm__layout_points(w, (char *)w->memory);
+    w->points.capacity = w->desc.points;
+    for (i = 0; i < nodes; i++) w->head[i] = -1;
+}
+
 MPM_API mpm_status mpm_init(mpm_world *w, const mpm_desc *d, void *memory, size_t bytes)
 {
-    size_t points, work, i, nodes;
+    size_t points, work;
     mpm_status s;
     memset(w, 0, sizeof *w);
     w->fault.index = -1;
     if ((s = mpm_desc_check(d, &w->fault)) != MPM_OK) return s;
-    w->desc = *d;
-    if (mpm__flat(d)) {
-        w->desc.cells[1] = 1;
-        w->desc.side[2] = w->desc.side[3] = MPM_SIDE_OPEN;
-    }
-    mpm__grid_sizes(w);
-    points = mpm_size_add(mpm__layout_points(w, NULL), MPM_ALIGN) / MPM_ALIGN * MPM_ALIGN;
+    mpm__describe(w, d);
+    points = mpm__points_bytes(w);
     work = mpm__layout_work(w, NULL, mpm__guess_nodes(d));
     if (mpm_size_add(points, work) == (size_t)-1)
         return mpm_fail(&w->fault, MPM_ERR_MEMORY, "points", (mpm_real)d->points, -1);
-    if (memory) {
-        if (bytes < points + work)
-            return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
-        w->memory = memory;
-        w->work = (char *)memory + points;
-    } else {
-        w->memory = MPM_MALLOC(points);
-        w->work = w->memory ? MPM_MALLOC(work) : NULL;
-        w->owns_memory = w->owns_work = 1;
-        if (!w->work) {
-            mpm_free(w);
-            return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)(points + work), -1);
-        }
-    }
-    w->memory_bytes = points;
-    w->work_bytes = work;
-    memset(w->memory, 0, points);
-    mpm__layout_points(w, (char *)w->memory);
+    if (memory && bytes < points + work) return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
+    if (!mpm__take_memory(w, memory, points, work))
+        return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)(points + work), -1);
+    mpm__clear_points(w);
     mpm__layout_work(w, (char *)w->work, mpm__guess_nodes(d));
-    w->points.capacity = d->points;
-    for (i = 0, nodes = mpm__grid_nodes(w); i < nodes; i++) w->head[i] = -1;
     return MPM_OK;
 }
 
@@ -2173,7 +2578,8 @@ MPM_API void mpm_free(mpm_world *w)
 
 static inline int32_t mpm__grown(const mpm_world *w)
 {
-    int32_t need = w->pairs_possible > w->node_capacity ? w->pairs_possible : w->node_capacity;
+    const int32_t pairs = w->pairs_possible < 250000000 ? 4 * w->pairs_possible : 1000000000;
+    int32_t need = pairs > w->node_capacity && w->pairs_possible > w->pair_capacity ? pairs : w->node_capacity;
     return need > 1000000000 ? 2000000000 : 2 * need;
 }
 
@@ -2199,12 +2605,96 @@ MPM_API mpm_status mpm_reserve(mpm_world *w, void *memory, size_t bytes)
     return MPM_OK;
 }
 
+/* Copies what the points, bodies and rules of `from` hold into the larger arrays of w. */
+static inline void mpm__copy_points(mpm_world *w, const mpm_world *from)
+{
+    const size_t n = (size_t)from->points.count;
+    int f;
+    if (from->bodies > 0) memcpy(w->body, from->body, (size_t)from->bodies * sizeof *w->body);
+    if (from->rules > 0) memcpy(w->rule, from->rule, (size_t)from->rules * sizeof *w->rule);
+    if (n == 0) return;
+    for (f = 0; f < from->fields; f++)
+        memcpy(w->field + (size_t)f * w->stride, from->field + (size_t)f * from->stride, n * sizeof *w->field);
+    memcpy(w->points.id, from->points.id, n * sizeof *w->points.id);
+    memcpy(w->points.flags, from->points.flags, n);
+}
+
+/* Room for the capacities that w->desc now asks for, where `before` had less. The grid is empty after it. */
+static inline mpm_status mpm__enlarge(mpm_world *w, const mpm_world *before)
+{
+    const size_t bytes = mpm__points_bytes(w);
+    void *block = bytes == (size_t)-1 ? NULL : MPM_MALLOC(bytes);
+    if (!block) {
+        *w = *before;
+        return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
+    }
+    w->memory = block;
+    w->memory_bytes = bytes;
+    mpm__clear_points(w);
+    mpm__copy_points(w, before);
+    w->nodes = w->runs = w->pairs = w->pairs_possible = w->touches = 0;
+    MPM_FREE(before->memory);
+    return MPM_OK;
+}
+
+/* Room for so many points, bodies, rules, user fields more. Only memory of our own grows. */
+static inline mpm_status mpm__room(mpm_world *w, int32_t points, int32_t bodies, int32_t rules, int fields)
+{
+    const mpm_world before = *w;
+    const int32_t count = w->points.count;
+    if (points > 2147483647 - count) return mpm_fail(&w->fault, MPM_ERR_FULL, "points", (mpm_real)points, -1);
+    if (count + points <= w->desc.points && w->bodies + bodies <= w->desc.bodies && w->rules + rules <= w->desc.rules &&
+        fields <= w->desc.user_fields)
+        return MPM_OK;
+    if (!w->owns_memory) {
+        if (count + points > w->desc.points)
+            return mpm_fail(&w->fault, MPM_ERR_FULL, "points", (mpm_real)w->desc.points, -1);
+        if (w->bodies + bodies > w->desc.bodies)
+            return mpm_fail(&w->fault, MPM_ERR_FULL, "bodies", (mpm_real)w->desc.bodies, w->bodies);
+        if (w->rules + rules > w->desc.rules)
+            return mpm_fail(&w->fault, MPM_ERR_FULL, "rules", (mpm_real)w->desc.rules, -1);
+        return mpm_fail(&w->fault, MPM_ERR_FULL, "user_fields", (mpm_real)w->desc.user_fields, -1);
+    }
+    if (count + points > w->desc.points) w->desc.points = points > count / 4 ? count + points : count + count / 4;
+    if (w->bodies + bodies > w->desc.bodies) w->desc.bodies = 2 * w->bodies + bodies;
+    if (w->rules + rules > w->desc.rules) w->desc.rules = 2 * w->rules + rules;
+    if (fields > w->desc.user_fields) w->desc.user_fields = fields;
+    return mpm__enlarge(w, &before);
+}
+
+MPM_API int mpm_field_take(mpm_world *w, const char *name)
+{
+    int f;
+    for (f = 0; f < MPM_USER_FIELDS && w->user_name[f]; f++)
+        if (!strcmp(w->user_name[f], name)) return f;
+    if (f == MPM_USER_FIELDS || mpm__room(w, 0, 0, 0, f + 1) != MPM_OK) return -1;
+    w->user_name[f] = name;
+    return f;
+}
+
+MPM_API mpm_status mpm_contact_set(mpm_world *w, int32_t a, int32_t b, const mpm_contact *rule)
+{
+    mpm_status s = mpm_contact_check(rule, &w->fault);
+    if (s == MPM_OK && rule->normal == MPM_NORMAL_LOGISTIC && !w->planes) {
+        if (!w->owns_work) return mpm_fail(&w->fault, MPM_ERR_FULL, "planes of logistic normals", 0, -1);
+        w->planes = 1;
+        s = mpm_reserve(w, NULL, 0);
+    }
+    if (s == MPM_OK) s = mpm__room(w, 0, 0, 1, 0);
+    if (s != MPM_OK) return s;
+    w->rule[w->rules].a = a;
+    w->rule[w->rules].b = b;
+    w->rule[w->rules++].contact = *rule;
+    return MPM_OK;
+}
+
 /* ---- shapes -------------------------------------------------------------------------------- */
 
 static inline mpm_shape mpm__shape(mpm_shape_kind kind, const mpm_real *low, const mpm_real *high)
 {
     mpm_shape s;
     int d;
+    memset(&s, 0, sizeof s);
     s.kind = kind;
     for (d = 0; d < 3; d++) {
         s.center[d] = (low[d] + high[d]) / 2;
@@ -2216,6 +2706,7 @@ static inline mpm_shape mpm__shape(mpm_shape_kind kind, const mpm_real *low, con
 MPM_API mpm_shape mpm_ellipsoid(mpm_real x, mpm_real y, mpm_real z, mpm_real a, mpm_real b, mpm_real c)
 {
     mpm_shape s;
+    memset(&s, 0, sizeof s);
     s.kind = MPM_SHAPE_ELLIPSOID;
     s.center[0] = x;
     s.center[1] = y;
@@ -2255,13 +2746,38 @@ MPM_API mpm_shape mpm_box(mpm_real x0, mpm_real y0, mpm_real z0, mpm_real x1, mp
     return mpm__shape(MPM_SHAPE_BOX, low, high);
 }
 
+MPM_API mpm_shape mpm_shape_user(mpm_inside_fn inside, void *context, const mpm_real low[3], const mpm_real high[3])
+{
+    mpm_shape s = mpm__shape(MPM_SHAPE_USER, low, high);
+    s.inside = inside;
+    s.context = context;
+    return s;
+}
+
+/* Whether a shape of the user's contains x and all that lies `shrink` beside it, along axes and diagonals. */
+static inline int mpm__contains_user(const mpm_shape *s, const mpm_real *x, int flat, mpm_real shrink)
+{
+    int i, beside = shrink > 0 ? 1 : 0;
+    mpm_real at[3];
+    for (i = 0; i < 27; i++) {
+        const int step[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+        if (!beside && i != 13) continue;
+        if (flat && step[1]) continue;
+        at[0] = x[0] + (mpm_real)step[0] * shrink;
+        at[1] = flat ? 0 : x[1] + (mpm_real)step[1] * shrink;
+        at[2] = x[2] + (mpm_real)step[2] * shrink;
+        if (!s->inside(s->context, at)) return 0;
+    }
+    return 1;
+}
+
 /* The section of s in the plane of a two-dimensional problem: y no longer matters. */
 static inline int mpm__contains(const mpm_shape *s, const mpm_real *x, int flat, mpm_real shrink)
 {
     mpm_real q[3];
     int d;
     for (d = 0; d < 3; d++) {
-        mpm_real half = s->half[d] - shrink;
+        mpm_real half = s->half[d] - (s->kind == MPM_SHAPE_USER ? 0 : shrink);
         if (half <= 0) return 0;
         q[d] = (d == 1 && flat) ? 0 : (x[d] - s->center[d]) / half;
     }
@@ -2269,6 +2785,9 @@ static inline int mpm__contains(const mpm_shape *s, const mpm_real *x, int flat,
     case MPM_SHAPE_ELLIPSOID: return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] <= 1;
     case MPM_SHAPE_CYLINDER: return q[0] * q[0] + q[1] * q[1] <= 1 && q[2] >= -1 && q[2] <= 1;
     case MPM_SHAPE_BOX: return q[0] >= -1 && q[0] <= 1 && q[1] >= -1 && q[1] <= 1 && q[2] >= -1 && q[2] <= 1;
+    case MPM_SHAPE_USER:
+        return q[0] >= -1 && q[0] <= 1 && q[1] >= -1 && q[1] <= 1 && q[2] >= -1 && q[2] <= 1 &&
+               mpm__contains_user(s, x, flat, shrink);
     default: return 0;
     }
 }
@@ -2301,7 +2820,7 @@ static inline mpm__lattice mpm__lattice_begin(const mpm_desc *d, const mpm_shape
     l.spacing = spacing;
     for (a = 0; a < 3; a++) {
         mpm_real across = s->half[a] / spacing;
-        if (s->kind == MPM_SHAPE_BOX || (s->kind == MPM_SHAPE_CYLINDER && a == 2))
+        if (s->kind == MPM_SHAPE_BOX || s->kind == MPM_SHAPE_USER || (s->kind == MPM_SHAPE_CYLINDER && a == 2))
             l.n[a] = (int32_t)(2 * across + MPM_R(0.5));
         else
             l.n[a] = 2 * (int32_t)(across + 1);
@@ -2366,20 +2885,26 @@ MPM_API int32_t mpm_shape_count(const mpm_desc *d, const mpm_shape *s, mpm_real 
 
 /* ---- bodies -------------------------------------------------------------------------------- */
 
-static inline mpm_status mpm__body_check(const mpm_world *w, const mpm_body_desc *b, mpm_fault *f)
+/* What a shape must be to be filled with points. */
+static inline mpm_status mpm__shape_check(const mpm_body_desc *b, mpm_fault *f)
 {
     const mpm_shape *s = &b->shape;
-    mpm_status st;
+    mpm_status st = mpm_want(s->kind > MPM_SHAPE_NONE && s->kind <= MPM_SHAPE_USER, f, "shape", (mpm_real)s->kind, -1);
     int a;
-    if (w->bodies >= w->desc.bodies)
-        return mpm_fail(f, MPM_ERR_FULL, "bodies", (mpm_real)w->desc.bodies, w->bodies);
-    st = mpm_want(s->kind > MPM_SHAPE_NONE && s->kind <= MPM_SHAPE_BOX, f, "shape", (mpm_real)s->kind, -1);
-    if (st != MPM_OK) return st;
-    for (a = 0; a < 3; a++) {
-        if ((st = mpm_want(1, f, "shape.center", s->center[a], a)) != MPM_OK) return st;
-        if ((st = mpm_want(s->half[a] > 0, f, "shape.half", s->half[a], a)) != MPM_OK) return st;
-        if ((st = mpm_want(1, f, "velocity", b->velocity[a], a)) != MPM_OK) return st;
+    for (a = 0; a < 3 && st == MPM_OK; a++) {
+        if ((st = mpm_want(1, f, "shape.center", s->center[a], a)) != MPM_OK) break;
+        st = mpm_want(s->half[a] > 0, f, "shape.half", s->half[a], a);
     }
+    if (st == MPM_OK) st = mpm_want(s->kind != MPM_SHAPE_USER || s->inside, f, "shape.inside", 0, -1);
+    return st;
+}
+
+static inline mpm_status mpm__body_check(const mpm_world *w, const mpm_body_desc *b, mpm_fault *f)
+{
+    mpm_status st = mpm_want(b->mark == MPM_MARK, f, "body (not from mpm_body_desc_default)", (mpm_real)b->mark, -1);
+    int a;
+    for (a = 0; a < 3 && st == MPM_OK; a++) st = mpm_want(1, f, "velocity", b->velocity[a], a);
+    if (st != MPM_OK) return st;
     if ((st = mpm_want(b->spacing > 0, f, "spacing", b->spacing, -1)) != MPM_OK) return st;
     if (b->spacing > w->desc.cell * (1 + 16 * MPM_EPSILON))
         return mpm_fail(f, MPM_ERR_ARGUMENT, "spacing (larger than the cell)", b->spacing, -1);
@@ -2389,8 +2914,15 @@ static inline mpm_status mpm__body_check(const mpm_world *w, const mpm_body_desc
     if ((st = mpm_want(b->wave_s >= 0, f, "wave_s", b->wave_s, -1)) != MPM_OK) return st;
     if ((st = mpm_want(b->absorb_normal >= 0, f, "absorb_normal", b->absorb_normal, -1)) != MPM_OK) return st;
     if ((st = mpm_want(b->absorb_shear >= 0, f, "absorb_shear", b->absorb_shear, -1)) != MPM_OK) return st;
-    if ((st = mpm_want(b->shell >= 0, f, "shell", b->shell, -1)) != MPM_OK) return st;
-    return MPM_OK;
+    if ((st = mpm_want(b->id >= -1, f, "id", (mpm_real)b->id, -1)) != MPM_OK) return st;
+    return mpm_want(b->shell >= 0, f, "shell", b->shell, -1);
+}
+
+/* Dampers stand on the faces of cylinders and boxes. */
+static inline mpm_status mpm__absorb_check(const mpm_body_desc *b, int faces, mpm_fault *f)
+{
+    const int known = faces ? MPM_FACE_BOTTOM | MPM_FACE_RIM : 0;
+    return mpm_want((b->absorb & ~known) == 0, f, "absorb (a face the body has not)", (mpm_real)b->absorb, -1);
 }
 
 /* Where on its body a new point lies. Damped faces are cuts through a larger body, not surfaces. */
@@ -2399,7 +2931,7 @@ static inline uint8_t mpm__flags(const mpm_body_desc *b, const mpm_real *x, int 
     const mpm_shape *s = &b->shape;
     mpm_shape core = *s;
     int f = 0, d;
-    if (s->kind != MPM_SHAPE_ELLIPSOID) {
+    if (s->kind == MPM_SHAPE_CYLINDER || s->kind == MPM_SHAPE_BOX) {
         mpm_shape wide = *s; /* the circumference alone: without upper and lower face */
         if (x[2] > s->center[2] + s->half[2] - b->spacing) f |= MPM_FACE_TOP;
         if (x[2] < s->center[2] - s->half[2] + b->spacing) f |= MPM_FACE_BOTTOM;
@@ -2471,43 +3003,67 @@ static inline int mpm__axis_outside(const mpm_desc *d, const mpm_real *x)
     return -1;
 }
 
+/* Writes a point at index i of the arrays, with its body's values for what is not told. */
+static inline void mpm__put_point(mpm_world *w, const mpm_body_desc *d, int32_t i, const mpm_real *x, mpm_real mass,
+                                  uint8_t flags)
+{
+    mpm_points *p = &w->points;
+    int a;
+    for (a = 0; a < w->fields; a++) w->field[(size_t)a * w->stride + (size_t)i] = 0;
+    for (a = 0; a < 3; a++) {
+        p->x[a][i] = x[a];
+        p->v[a][i] = d->velocity[a];
+    }
+    p->mass[i] = mass;
+    p->density[i] = d->density;
+    p->temperature[i] = d->temperature;
+    p->flags[i] = flags;
+}
+
+/* Whether a point may be placed at x: inside the grid, in no body's shape. */
+static inline mpm_status mpm__place_check(const mpm_world *w, const mpm_real *x, long index, mpm_fault *f)
+{
+    static const char *const name[3] = {"x of a point", "y of a point", "z of a point"};
+    const int a = mpm__axis_outside(&w->desc, x);
+    int32_t other;
+    if (a >= 0) return mpm_fail(f, MPM_ERR_OUTSIDE, name[a], x[a], index);
+    if ((other = mpm__body_at(w, x)) >= 0)
+        return mpm_fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
+    return MPM_OK;
+}
+
 /* Writes the points of b behind those in the world, without counting them in. */
 static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
 {
-    mpm_points *p = &w->points;
     const mpm_body_desc *d = &b->desc;
     mpm__lattice l = mpm__lattice_begin(&w->desc, &d->shape, d->spacing);
-    int32_t i = p->count, other;
-    double mass = 0;
+    int32_t i = w->points.count;
+    mpm_status s;
     mpm_real x[3];
-    int a, flat = mpm__flat(&w->desc);
     while (mpm__lattice_next(&l, &w->desc, &d->shape, x)) {
-        if (i >= p->capacity) return mpm_fail(f, MPM_ERR_FULL, "points", (mpm_real)p->capacity, -1);
-        if ((a = mpm__axis_outside(&w->desc, x)) >= 0)
-            return mpm_fail(f, MPM_ERR_OUTSIDE, a == 0 ? "x of a point" : a == 1 ? "y of a point" : "z of a point",
-                             x[a], w->bodies);
-        if ((other = mpm__body_at(w, x)) >= 0)
-            return mpm_fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
-        for (a = 0; a < w->fields; a++) w->field[(size_t)a * w->stride + (size_t)i] = 0;
-        for (a = 0; a < 3; a++) {
-            p->x[a][i] = x[a];
-            p->v[a][i] = d->velocity[a];
-        }
-        p->mass[i] = mpm__point_mass(&w->desc, d, x);
-        p->density[i] = d->density;
-        p->temperature[i] = d->temperature;
-        p->flags[i] = mpm__flags(d, x, flat);
-        p->id[i] = i;
+        if ((s = mpm__place_check(w, x, w->bodies, f)) != MPM_OK) return s;
+        mpm__put_point(w, d, i++, x, mpm__point_mass(&w->desc, d, x), mpm__flags(d, x, mpm__flat(&w->desc)));
+    }
+    b->count = i - w->points.count;
+    return MPM_OK;
+}
+
+/* Sums of the points just written, and their numbers. */
+static inline void mpm__body_sums(mpm_world *w, mpm_body *b)
+{
+    const mpm_points *p = &w->points;
+    double mass = 0;
+    int32_t i;
+    b->first = w->points.count;
+    b->active = b->count;
+    if (b->desc.id >= 0) w->next_id = b->desc.id;
+    for (i = b->first; i < b->first + b->count; i++) {
         if (p->flags[i] & MPM_FACE_BOTTOM) b->mass[0] += p->mass[i];
         if (p->flags[i] & MPM_FACE_RIM) b->mass[1] += p->mass[i];
         mass += (double)p->mass[i];
-        i++;
+        p->id[i] = w->next_id++;
     }
-    if (i == p->count) return mpm_fail(f, MPM_ERR_ARGUMENT, "shape (holds no point at spacing)", d->spacing, -1);
-    b->first = p->count;
-    b->count = b->active = i - p->count;
     b->point_mass = (mpm_real)(mass / b->count);
-    return MPM_OK;
 }
 
 /* A body added earlier may stick into the new one without the reverse. */
@@ -2526,33 +3082,212 @@ static inline int32_t mpm__point_inside(const mpm_world *w, const mpm_shape *s)
     return -1;
 }
 
+/* Counts a written body in and makes room for its nodes, with half as much again to spare. */
+static inline mpm_status mpm__body_join(mpm_world *w, mpm_body *b)
+{
+    const int32_t next_id = w->next_id;
+    mpm_status s;
+    mpm__body_sums(w, b);
+    w->body[w->bodies++] = *b;
+    w->points.count += b->count;
+    w->sorted_runs = 0;
+    s = mpm__locate(w);
+    if (s == MPM_OK && w->owns_work && w->nodes + w->nodes / 2 > w->node_capacity) {
+        s = mpm_reserve(w, NULL, 0);
+        if (s == MPM_OK) s = mpm__locate(w);
+    }
+    if (s >= 0) return s;
+    w->bodies--;
+    w->points.count -= b->count;
+    w->next_id = next_id;
+    return s;
+}
+
 MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *desc)
 {
+    const int faces = desc->shape.kind == MPM_SHAPE_CYLINDER || desc->shape.kind == MPM_SHAPE_BOX;
+    mpm_fault *f = &w->fault;
     mpm_body b;
     mpm_status s;
-    int32_t other;
+    int32_t other, count;
     memset(&b, 0, sizeof b);
-    if ((s = mpm__body_check(w, desc, &w->fault)) != MPM_OK) return s;
+    if ((s = mpm__body_check(w, desc, f)) != MPM_OK || (s = mpm__shape_check(desc, f)) != MPM_OK ||
+        (s = mpm__absorb_check(desc, faces, f)) != MPM_OK)
+        return s;
     if ((other = mpm__point_inside(w, &desc->shape)) >= 0)
-        return mpm_fail(&w->fault, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
+        return mpm_fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
+    count = mpm_shape_count(&w->desc, &desc->shape, desc->spacing);
+    if (count == 0) return mpm_fail(f, MPM_ERR_ARGUMENT, "shape (holds no point at spacing)", desc->spacing, -1);
+    if ((s = mpm__room(w, count, 1, 0, 0)) != MPM_OK) return s;
     b.desc = *desc;
     mpm__areas(&w->desc, &b);
-    if ((s = mpm__fill(w, &b, &w->fault)) != MPM_OK) return s;
-    w->body[w->bodies++] = b;
-    w->points.count += b.count;
-    w->sorted_runs = 0;
-    /* Room for the nodes, with half as much again to spare; caller's memory cannot grow by itself. */
-    for (;;) {
-        s = mpm_locate(w);
-        if (s == MPM_OK && w->owns_work && w->nodes + w->nodes / 2 > w->node_capacity) s = MPM_ERR_FULL;
-        if (s != MPM_ERR_FULL || !w->owns_work) break;
-        if ((s = mpm_reserve(w, NULL, 0)) != MPM_OK) break;
-    }
-    if (s < 0) {
-        w->bodies--;
-        w->points.count -= b.count;
+    if ((s = mpm__fill(w, &b, f)) != MPM_OK) return s;
+    return mpm__body_join(w, &b);
+}
+
+/* ---- bodies from points ---------------------------------------------------------------------- */
+
+/* Entry i of an array of a cloud, or what stands for it. */
+static inline mpm_real mpm__given(const mpm_real *array, int32_t i, mpm_real otherwise)
+{
+    return array ? array[i] : otherwise;
+}
+
+static inline mpm_real mpm__cloud_mass(const mpm_world *w, const mpm_body_desc *d, const mpm_cloud *c, int32_t i,
+                                       const mpm_real *x)
+{
+    if (c->mass) return c->mass[i];
+    return c->volume ? c->volume[i] * d->density : mpm__point_mass(&w->desc, d, x);
+}
+
+/* Where point i of a cloud lies. */
+static inline void mpm__cloud_place(const mpm_world *w, const mpm_cloud *c, int32_t i, mpm_real *x)
+{
+    int a;
+    for (a = 0; a < 3; a++) x[a] = a == 1 && mpm__flat(&w->desc) ? 0 : mpm__given(c->x[a], i, 0);
+}
+
+static inline mpm_status mpm__cloud_check(const mpm_world *w, const mpm_body_desc *d, const mpm_cloud *c, mpm_fault *f)
+{
+    mpm_real x[3], mass;
+    mpm_status s = mpm_want(c->count >= 1, f, "points", (mpm_real)c->count, -1);
+    int32_t i;
+    int a;
+    for (a = 0; a < 3 && s == MPM_OK; a++)
+        s = mpm_want(c->x[a] || (a == 1 && mpm__flat(&w->desc)), f, "x (missing)", 0, a);
+    for (i = 0; i < c->count && s == MPM_OK; i++) {
+        mpm__cloud_place(w, c, i, x);
+        for (a = 0; a < 3 && s == MPM_OK; a++) {
+            s = mpm_want(1, f, "x of a point", x[a], i);
+            if (s == MPM_OK) s = mpm_want(1, f, "v of a point", mpm__given(c->v[a], i, 0), i);
+        }
+        if (s == MPM_OK) s = mpm__place_check(w, x, i, f);
+        if (s != MPM_OK) return s;
+        mass = mpm__cloud_mass(w, d, c, i, x);
+        s = mpm_want(mass > 0, f, "mass of a point", mass, i);
     }
     return s;
+}
+
+/* Point i of a cloud, at index `to` of the arrays. */
+static inline void mpm__put_cloud(mpm_world *w, const mpm_body_desc *d, const mpm_cloud *c, int32_t i, int32_t to)
+{
+    mpm_real x[3];
+    int a;
+    mpm__cloud_place(w, c, i, x);
+    mpm__put_point(w, d, to, x, mpm__cloud_mass(w, d, c, i, x), (uint8_t)(c->flags ? c->flags[i] : 0));
+    for (a = 0; a < 3; a++) w->points.v[a][to] = mpm__given(c->v[a], i, d->velocity[a]);
+}
+
+/* The box around a cloud, half a spacing wide of it, as a shape that contains nothing. */
+static inline mpm_shape mpm__cloud_extent(const mpm_world *w, const mpm_cloud *c, mpm_real spacing)
+{
+    mpm_real low[3], high[3], x[3];
+    int32_t i;
+    int a;
+    for (i = 0; i < c->count; i++) {
+        mpm__cloud_place(w, c, i, x);
+        for (a = 0; a < 3; a++) {
+            if (i == 0 || x[a] - spacing / 2 < low[a]) low[a] = x[a] - spacing / 2;
+            if (i == 0 || x[a] + spacing / 2 > high[a]) high[a] = x[a] + spacing / 2;
+        }
+    }
+    return mpm__shape(MPM_SHAPE_NONE, low, high);
+}
+
+MPM_API mpm_status mpm_body_add_points(mpm_world *w, const mpm_body_desc *desc, const mpm_cloud *c)
+{
+    mpm_fault *f = &w->fault;
+    mpm_body b;
+    mpm_status s;
+    memset(&b, 0, sizeof b);
+    if ((s = mpm__body_check(w, desc, f)) != MPM_OK || (s = mpm__absorb_check(desc, 0, f)) != MPM_OK ||
+        (s = mpm__cloud_check(w, desc, c, f)) != MPM_OK || (s = mpm__room(w, c->count, 1, 0, 0)) != MPM_OK)
+        return s;
+    b.desc = *desc;
+    b.desc.shape = mpm__cloud_extent(w, c, desc->spacing);
+    for (b.count = 0; b.count < c->count; b.count++)
+        mpm__put_cloud(w, desc, c, b.count, w->points.count + b.count);
+    return mpm__body_join(w, &b);
+}
+
+/* Copies a point over another. */
+static inline void mpm__copy_point(mpm_world *w, int32_t from, int32_t to)
+{
+    int f;
+    for (f = 0; f < w->fields; f++) w->field[(size_t)f * w->stride + (size_t)to] = w->field[(size_t)f * w->stride + (size_t)from];
+    w->points.id[to] = w->points.id[from];
+    w->points.flags[to] = w->points.flags[from];
+}
+
+/* Opens a place behind the active points of a body: the bodies after it move up by one, first to last. */
+static inline int32_t mpm__open_place(mpm_world *w, int32_t body)
+{
+    int32_t c, hole = w->points.count;
+    for (c = w->bodies - 1; c >= body; c--) {
+        mpm_body *b = &w->body[c];
+        const int32_t retired = b->first + b->active;
+        if (b->active < b->count) {
+            mpm__copy_point(w, retired, hole);
+            hole = retired;
+        }
+        if (c == body) break;
+        if (b->active > 0) mpm__copy_point(w, b->first, hole);
+        hole = b->first++;
+    }
+    return hole;
+}
+
+/* Closes the place of point i of a body: its points and the bodies after it move down. */
+static inline void mpm__close_place(mpm_world *w, int32_t body, int32_t i)
+{
+    int32_t c, hole = i;
+    for (c = body; c < w->bodies; c++) {
+        mpm_body *b = &w->body[c];
+        const int32_t end = b->first + b->active, last = b->first + b->count;
+        if (c > body) b->first--;
+        if (hole < end) {
+            if (end - 1 > hole) mpm__copy_point(w, end - 1, hole);
+            hole = end - 1;
+            if (c == body) b->active--;
+        }
+        if (last - 1 > hole) mpm__copy_point(w, last - 1, hole);
+        hole = last - 1;
+        if (c == body) b->count--;
+    }
+    w->points.count--;
+}
+
+MPM_API mpm_status mpm_points_add(mpm_world *w, int32_t body, const mpm_cloud *c)
+{
+    mpm_fault *f = &w->fault;
+    int32_t i;
+    mpm_status s = mpm_want(body >= 0 && body < w->bodies, f, "body", (mpm_real)body, -1);
+    if (s != MPM_OK || (s = mpm__cloud_check(w, &w->body[body].desc, c, f)) != MPM_OK ||
+        (s = mpm__room(w, c->count, 0, 0, 0)) != MPM_OK)
+        return s;
+    mpm__grid_reset(w);
+    for (i = 0; i < c->count; i++) {
+        const int32_t place = mpm__open_place(w, body);
+        mpm__put_cloud(w, &w->body[body].desc, c, i, place);
+        w->points.id[place] = w->next_id++;
+        w->body[body].count++;
+        w->body[body].active++;
+        w->points.count++;
+    }
+    w->sorted_runs = 0;
+    return MPM_OK;
+}
+
+MPM_API mpm_status mpm_point_take(mpm_world *w, int32_t i)
+{
+    int32_t b = 0;
+    mpm_status s = mpm_want(i >= 0 && i < w->points.count, &w->fault, "point", (mpm_real)i, i);
+    if (s != MPM_OK) return s;
+    mpm__grid_reset(w);
+    while (i >= w->body[b].first + w->body[b].count) b++;
+    mpm__close_place(w, b, i);
+    return MPM_OK;
 }
 
 MPM_API mpm_real mpm_time_step(const mpm_world *w, mpm_real factor)
@@ -2572,7 +3307,8 @@ MPM_API mpm_desc mpm_desc_default(void)
     memset(&d, 0, sizeof d);
     d.cells[0] = d.cells[1] = d.cells[2] = 1;
     d.mass_cutoff = MPM_EPSILON * MPM_EPSILON;
-    d.contact_cutoff = MPM_R(1e-3);
+    d.contact.cutoff = MPM_R(1e-3);
+    d.mark = MPM_MARK;
     return d;
 }
 
@@ -2583,31 +3319,32 @@ MPM_API mpm_body_desc mpm_body_desc_default(void)
     b.temperature = 298;
     b.absorb_normal = b.absorb_shear = 1;
     b.shell = 1;
+    b.id = -1;
+    b.mark = MPM_MARK;
     return b;
 }
 
-/* The choices of a description: each one of its list. */
-static inline mpm_status mpm__desc_choices(const mpm_desc *d, mpm_fault *f)
+MPM_API mpm_status mpm_contact_check(const mpm_contact *c, mpm_fault *f)
 {
-    const char *const name[] = {"geometry", "basis", "contact", "normal", "separation"};
-    const int value[] = {(int)d->geometry, (int)d->basis, (int)d->contact, (int)d->normal, d->separation};
-    const int last[] = {MPM_AXISYMMETRIC, MPM_GIMP, MPM_CONTACT_NONE, MPM_NORMAL_LOGISTIC, 1};
-    mpm_status s = MPM_OK;
-    int i;
-    for (i = 0; i < 5 && s == MPM_OK; i++)
-        s = mpm_want(value[i] >= 0 && value[i] <= last[i], f, name[i], (mpm_real)value[i], -1);
-    for (i = 0; i < 6 && s == MPM_OK; i++)
-        s = mpm_want((int)d->side[i] >= 0 && (int)d->side[i] <= MPM_SIDE_WALL, f, "side", (mpm_real)d->side[i], i);
+    mpm_status s = mpm_want((int)c->law >= 0 && c->law < MPM_CONTACT_LAWS, f, "contact.law", (mpm_real)c->law, -1);
+    if (s == MPM_OK)
+        s = mpm_want((int)c->normal >= 0 && c->normal < MPM_NORMAL_RULES, f, "contact.normal", (mpm_real)c->normal, -1);
+    if (s == MPM_OK) s = mpm_want(c->touch == 0 || c->touch == 1, f, "contact.touch", (mpm_real)c->touch, -1);
+    if (s == MPM_OK) s = mpm_want(c->friction >= 0, f, "contact.friction", c->friction, -1);
+    if (s == MPM_OK) s = mpm_want(c->cutoff >= 0, f, "contact.cutoff", c->cutoff, -1);
+    if (s == MPM_OK) s = mpm_want(c->law != MPM_CONTACT_USER || c->fn, f, "contact.fn", 0, -1);
     return s;
 }
 
-MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *f)
+/* The grid of a description. */
+static inline mpm_status mpm__desc_grid(const mpm_desc *d, mpm_fault *f)
 {
-    mpm_status s = mpm__desc_choices(d, f);
     double nodes = 1;
+    mpm_status s = mpm_want(d->cell > 0, f, "cell", d->cell, -1);
     int a;
+    for (a = 0; a < 6 && s == MPM_OK; a++)
+        s = mpm_want((int)d->side[a] >= 0 && d->side[a] < MPM_SIDE_KINDS, f, "side", (mpm_real)d->side[a], a);
     if (s != MPM_OK) return s;
-    if ((s = mpm_want(d->cell > 0, f, "cell", d->cell, -1)) != MPM_OK) return s;
     for (a = 0; a < 3; a++) {
         if ((s = mpm_want(1, f, "origin", d->origin[a], a)) != MPM_OK) return s;
         if ((s = mpm_want(1, f, "gravity", d->gravity[a], a)) != MPM_OK) return s;
@@ -2615,22 +3352,36 @@ MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *f)
         if ((s = mpm_want(d->cells[a] >= 1, f, "cells", (mpm_real)d->cells[a], a)) != MPM_OK) return s;
         nodes *= d->cells[a] + 3.0;
     }
-    if ((s = mpm_want(nodes < 2147483647.0, f, "cells in all", (mpm_real)nodes, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->points >= 1, f, "points", (mpm_real)d->points, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->bodies >= 1, f, "bodies", (mpm_real)d->bodies, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->nodes >= 0, f, "nodes", (mpm_real)d->nodes, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->friction >= 0, f, "friction", d->friction, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->wall_friction >= 0, f, "wall_friction", d->wall_friction, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->mass_cutoff >= 0, f, "mass_cutoff", d->mass_cutoff, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->contact_cutoff >= 0, f, "contact_cutoff", d->contact_cutoff, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->bond_width >= 0 && d->bond_width <= 2, f, "bond_width", d->bond_width, -1)) != MPM_OK)
-        return s;
-    if ((s = mpm_want(d->user_fields >= 0 && d->user_fields <= MPM_USER_FIELDS, f, "user_fields",
-                       (mpm_real)d->user_fields, -1)) != MPM_OK)
-        return s;
     if (d->geometry == MPM_AXISYMMETRIC && !(d->origin[0] >= 0))
         return mpm_fail(f, MPM_ERR_ARGUMENT, "origin of r", d->origin[0], 0);
-    return MPM_OK;
+    return mpm_want(nodes < 2147483647.0, f, "cells in all", (mpm_real)nodes, -1);
+}
+
+/* Its capacities: whole numbers from 0. */
+static inline mpm_status mpm__desc_capacities(const mpm_desc *d, mpm_fault *f)
+{
+    mpm_status s = mpm_want(d->points >= 0, f, "points", (mpm_real)d->points, -1);
+    if (s == MPM_OK) s = mpm_want(d->bodies >= 0, f, "bodies", (mpm_real)d->bodies, -1);
+    if (s == MPM_OK) s = mpm_want(d->rules >= 0, f, "rules", (mpm_real)d->rules, -1);
+    if (s == MPM_OK) s = mpm_want(d->nodes >= 0, f, "nodes", (mpm_real)d->nodes, -1);
+    if (s == MPM_OK)
+        s = mpm_want(d->user_fields >= 0 && d->user_fields <= MPM_USER_FIELDS, f, "user_fields",
+                     (mpm_real)d->user_fields, -1);
+    return s;
+}
+
+MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *f)
+{
+    mpm_status s = mpm_want(d->mark == MPM_MARK, f, "desc (not from mpm_desc_default)", (mpm_real)d->mark, -1);
+    if (s == MPM_OK)
+        s = mpm_want((int)d->geometry >= 0 && d->geometry < MPM_GEOMETRIES, f, "geometry", (mpm_real)d->geometry, -1);
+    if (s == MPM_OK) s = mpm_want((int)d->basis >= 0 && d->basis < MPM_BASES, f, "basis", (mpm_real)d->basis, -1);
+    if (s == MPM_OK) s = mpm__desc_grid(d, f);
+    if (s == MPM_OK) s = mpm__desc_capacities(d, f);
+    if (s == MPM_OK) s = mpm_contact_check(&d->contact, f);
+    if (s == MPM_OK) s = mpm_want(d->wall_friction >= 0, f, "wall_friction", d->wall_friction, -1);
+    if (s == MPM_OK) s = mpm_want(d->mass_cutoff >= 0, f, "mass_cutoff", d->mass_cutoff, -1);
+    return s;
 }
 
 #ifdef __cplusplus

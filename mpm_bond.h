@@ -4,7 +4,7 @@
    DO THIS
      #define MPM_IMPLEMENTATION in ONE file, then include mpm.h and mpm_bond.h there; "mpm_bond.h" alone
      everywhere else. Put mpm_bond_grow and mpm_bond_nodes into your loop, between mpm_contact_find and
-     mpm_contact_apply. Link with -lm.
+     mpm_contact_apply; or call mpm_bond_step. Link with -lm.
 
      A second model of bonding: bond.rule = MPM_BOND_USER with your bond.grow, which says by how much D of a
      point grew; and your bond.decide, which says whether a pair of bodies holds at a node.
@@ -28,7 +28,6 @@
            mpm_real dt;
            d.geometry = MPM_AXISYMMETRIC; d.side[0] = MPM_SIDE_SYMMETRY;
            d.cell = 1; d.cells[0] = 29; d.cells[2] = 42; d.origin[2] = -14;
-           d.bodies = 2; d.points = mpm_shape_count(&d, &ball, 0.5) + mpm_shape_count(&d, &plate, 0.5);
            if (mpm_material_preset(&al, "al", &units, NULL) < 0 || mpm_init(&w, &d, NULL, 0) < 0) return 1;
            b.spacing = 0.5; b.density = al.density; b.temperature = al.temperature;
            b.stress = mpm_material_stress; b.material = &al;
@@ -39,20 +38,18 @@
            if (mpm_body_add(&w, &b) < 0) return 1;
            dt = 0.1 * d.cell / b.wave_p;
            while (w.time < 0.08) {
-               mpm_status status = mpm_locate(&w);
-               if (status == MPM_ERR_FULL && mpm_reserve(&w, NULL, 0) >= 0) continue;
-               if (status < 0) return 1;
+               if (mpm_locate(&w, dt) < 0) return 1;
                mpm_p2g(&w);
-               mpm_forces(&w, dt);
-               mpm_grid_update(&w, dt);
+               mpm_forces(&w);
+               mpm_grid_update(&w);
                mpm_contact_find(&w);
-               mpm_bond_grow(&bond, &w, dt);     // surface points in contact gather D
-               mpm_bond_nodes(&bond, &w);        // D of the nodes where bodies meet
-               mpm_contact_apply(&w, dt);        // separating pairs with D >= 1 are held together
-               mpm_g2p(&w, dt);
-               mpm_musl(&w, dt);
-               if (mpm_stress(&w, dt) < 0) return 1;
-               mpm_move(&w, dt);
+               mpm_bond_grow(&bond, &w);     // surface points in contact gather D
+               mpm_bond_nodes(&bond, &w);    // D of the nodes where bodies meet: how far they are held
+               mpm_contact_apply(&w);        // separating pairs are held together
+               mpm_g2p(&w);
+               mpm_musl(&w);
+               if (mpm_stress(&w) < 0) return 1;
+               mpm_move(&w);
            }
            printf("PBCP %.1f %%, rebound at %.1f m/s\n", mpm_bond_measure_body(&w, -1).pbcp,
                   mpm_rebound_from(&w, 0, 1, 60).mean);
@@ -61,13 +58,13 @@
        }
 
    CONTENTS
-     growth and decision   mpm_bond_default, _check, _law, _of_point, _grow, _nodes
+     growth and decision   mpm_bond_default, _check, _law, _of_point, _grow, _of_pair, _nodes, _step
      measures              mpm_bond_measure_body, mpm_bond_measure_pair
 
    THE MODEL (source A, chapter 4). A surface point that is in contact and flows plastically dissipates
    sigma d(eps) per volume; times the cell edge that is an energy per area, dG. It bonds when enough
    has been dissipated fast enough: dD = dG / G_b, with G_b = G_c (1 - ln(dG / (Gdot_c dt))), and a
-   node whose bodies' mean D reaches 1 carries tension (see desc.bond_width).
+   node whose bodies' mean D reaches 1 carries tension.
 
    A KNOWN LIMIT. A held pair sticks while separating and slides while approaching; each change of
    sides costs or gives a little energy, in proportion to the step. Two elastic spheres bonded all over
@@ -102,6 +99,8 @@
 #define mpm_bond_grow mpm_bond_grow_f32
 #define mpm_bond_of_point mpm_bond_of_point_f32
 #define mpm_bond_nodes mpm_bond_nodes_f32
+#define mpm_bond_of_pair mpm_bond_of_pair_f32
+#define mpm_bond_step mpm_bond_step_f32
 #define mpm_bond_measure_body mpm_bond_measure_body_f32
 #define mpm_bond_measure_pair mpm_bond_measure_pair_f32
 #endif
@@ -110,74 +109,91 @@
 extern "C" {
 #endif
 
-typedef enum mpm_bond_rule {
-    MPM_BOND_NONE = 0, /* D stays as it is */
-    MPM_BOND_ENERGY,   /* A 4.16, 4.17 */
-    MPM_BOND_STRAIN,   /* A 4.3 - 4.5 */
-    MPM_BOND_USER      /* mpm_bond.grow */
-} mpm_bond_rule;
-
-/* A growth rule of your own (the general A 4.1): by how much D of a surface point in contact grew in the
-   last step of dt; everything known of the point is in w->points. What is not > 0 adds nothing. */
-typedef mpm_real (*mpm_bond_fn)(void *context, const mpm_world *w, int32_t point, mpm_real dt);
-
-/* A decision of your own whether a bond holds: the D that a pair gets, whose pair->bond is that of A 4.7.
-   At 1 or more it is held together in separation (see desc.bond_width). */
-typedef mpm_real (*mpm_bond_pair_fn)(void *context, const mpm_world *w, const mpm_pair *pair);
+/* Each choice once, as X(constant, "word", "meaning"), as in mpm.h. */
+#define MPM_BOND_RULE_LIST(X)                                  \
+    X(MPM_BOND_NONE, "none", "D stays as it is")               \
+    X(MPM_BOND_ENERGY, "energy", "A 4.16, 4.17")               \
+    X(MPM_BOND_STRAIN, "strain", "A 4.3 - 4.5")                \
+    X(MPM_BOND_USER, "user", "mpm_bond.grow")
 
 /* The D of a body at a node, from its surface points with N_I > 0 there (A 4.6). */
-typedef enum mpm_bond_average {
-    MPM_BOND_MEAN = 0, /* their arithmetic mean: the thesis's text */
-    MPM_BOND_WEIGHTED, /* their mean weighted with N_I */
-    MPM_BOND_LITERAL   /* sum D_p N_I / n: A 4.6 as printed, which practically never reaches 1 */
-} mpm_bond_average;
+#define MPM_BOND_AVERAGE_LIST(X)                                                      \
+    X(MPM_BOND_MEAN, "mean", "their arithmetic mean: the thesis's text")              \
+    X(MPM_BOND_WEIGHTED, "weighted", "their mean weighted with N_I")                  \
+    X(MPM_BOND_LITERAL, "literal", "sum D_p N_I / n: A 4.6 as printed, which practically never reaches 1")
+
+typedef enum mpm_bond_rule { MPM_BOND_RULE_LIST(MPM__LIST_ENUM) MPM_BOND_RULES } mpm_bond_rule;
+typedef enum mpm_bond_average { MPM_BOND_AVERAGE_LIST(MPM__LIST_ENUM) MPM_BOND_AVERAGES } mpm_bond_average;
+
+/* A growth rule of your own (the general A 4.1): by how much D of a surface point in contact grew in the
+   last step; everything known of the point is in w->points, the step in w->dt. What is not > 0 adds nothing. */
+typedef mpm_real (*mpm_bond_fn)(void *context, const mpm_world *w, int32_t point);
+
+/* A decision of your own whether a bond holds: what D the pair gets instead of D, that of A 4.7. At 1 or more it
+   is held together in separation (see mpm_bond.width). */
+typedef mpm_real (*mpm_bond_pair_fn)(void *context, const mpm_world *w, const mpm_pair *pair, mpm_real D);
 
 typedef struct mpm_bond {
+    unsigned mark;          /* set by mpm_bond_default */
     mpm_bond_rule rule;
     mpm_bond_average average;
     mpm_real critical;      /* energy rule: G_c [energy/area]; strain rule: eps_c */
     mpm_real critical_rate; /* energy rule: Gdot_c [energy/area/time]; strain rule: rate [1/time] */
     mpm_real length;        /* energy rule: regularising length; 0: the cell edge (thesis: DCell) */
     mpm_real floor;         /* least value of the factor 1 - ln(rate/critical rate), > 0 */
-    int partner;            /* user field of the points that remembers the body they bond to, or -1 */
+    mpm_real width;         /* 0: a pair is held from D = 1 on (A 4.7). > 0, up to 2: a softened threshold; each
+                               step takes a share of the separating momentum, none at D = 1 - width/2, all at
+                               1 + width/2 */
+    mpm_real strength;      /* largest traction of a held pair [stress]: beyond it the pair slips; 0: no limit */
+    int partner;            /* user field of the points (mpm_field_take) that remembers the body they bond to, or -1 */
     mpm_bond_fn grow;       /* the rule of MPM_BOND_USER */
     mpm_bond_pair_fn decide; /* NULL: A 4.7 decides */
     void *context;          /* passed to both */
-    long floor_hits;        /* how often the floor acted */
-    long increments;        /* how often D grew */
 } mpm_bond;
+
+/* What is counted in the world's tally. */
+enum {
+    MPM_TALLY_BOND_FLOOR = 4, /* how often the floor acted */
+    MPM_TALLY_BOND_GROWTH     /* how often D grew */
+};
 
 /* The energy rule with the pair of source A, 1503.74 J/m^2 and 2.271e5 J/(m^2 us), floor 0.05, in the given
    units. Test: 30_bond. */
 MPM_API mpm_bond mpm_bond_default(const mpm_units *units);
 
 /* MPM_ERR_ARGUMENT / NAN with the field and its value: rule and average of their lists; critical, critical_rate,
-   floor > 0; length >= 0; with MPM_BOND_USER only a grow that is not NULL; partner -1 or a user field.
-   Test: 30_bond. */
+   floor > 0; length, strength >= 0; width 0 .. 2; with MPM_BOND_USER a grow that is not NULL; partner -1 or a
+   user field. Test: 30_bond. */
 MPM_API mpm_status mpm_bond_check(const mpm_bond *b, mpm_fault *fault);
 
-/* Growth of D of one point in one step (A 4.3 - 4.5, 4.16, 4.17).
+/* Growth of D of one point in one step, amount / (critical (1 - ln(amount/(critical_rate dt)))) (A 4.3 - 4.5,
+   4.16, 4.17).
    amount: energy rule dG [energy/area], strain rule the effective plastic strain increment; >= 0, and
-   0 adds nothing. dt [time] > 0. The factor 1 - ln(amount/(critical_rate dt)) falls with the rate and
-   would turn negative beyond e times the critical rate: it is kept at the floor there, and the hit is
-   counted. Test: 30_bond. */
-MPM_API mpm_real mpm_bond_law(mpm_bond *b, mpm_real amount, mpm_real dt);
+   0 adds nothing. dt [time] > 0. The factor 1 - ln falls with the rate and would turn negative beyond e times the
+   critical rate: it is kept at the floor there. tally: a world's, or NULL. Test: 30_bond. */
+MPM_API mpm_real mpm_bond_law(const mpm_bond *b, mpm_real amount, mpm_real dt, int64_t *tally);
 
 /* Growth of D of one surface point in contact by what it did in the last step, whatever the rule.
    Test: 30_bond. */
-MPM_API mpm_real mpm_bond_of_point(mpm_bond *b, const mpm_world *w, int32_t point, mpm_real dt);
+MPM_API mpm_real mpm_bond_of_point(const mpm_bond *b, mpm_world *w, int32_t point);
 
 /* Lets D of the surface points grow by what the last step dissipated, where they are in contact:
-   within the support of a node that carries two bodies. That is so with desc.separation too: D then also grows
+   within the support of a node that carries two bodies. That is so with contact.touch too: D then also grows
    where bodies share a node and do not touch yet. With b->partner, a user field of the world, the
    point also remembers the number of the other body + 1; of several, the one with most mass at the contact
    node nearest to the point. After mpm_contact_find. Test: 30_bond. */
-MPM_API void mpm_bond_grow(mpm_bond *b, mpm_world *w, mpm_real dt);
+MPM_API void mpm_bond_grow(const mpm_bond *b, mpm_world *w);
 
-/* Nodal D into the pairs: the mean over the two bodies of their nodal values (A 4.6, 4.7), or what
-   b->decide makes of it. A body without surface point at the node counts as 0. After mpm_contact_find.
+/* D of a pair: the mean over the two bodies of their nodal values (A 4.6, 4.7), or what b->decide makes of it. A
+   body without surface point at the node counts as 0. After mpm_bond_nodes. Test: 30_bond. */
+MPM_API mpm_real mpm_bond_of_pair(const mpm_bond *b, const mpm_world *w, const mpm_pair *pair);
+
+/* Nodal D, and from it how far each pair is held: pair.hold and pair.limit. After mpm_contact_find.
    Test: 30_bond. */
 MPM_API void mpm_bond_nodes(const mpm_bond *b, mpm_world *w);
+
+/* mpm_step with the bond in it. Test: 30_bond. */
+MPM_API mpm_status mpm_bond_step(const mpm_bond *b, mpm_world *w, mpm_real dt);
 
 /* ---- measures ------------------------------------------------------------------------------- */
 
@@ -223,6 +239,7 @@ MPM_API mpm_bond mpm_bond_default(const mpm_units *u)
     b.rule = MPM_BOND_ENERGY;
     b.critical = (mpm_real)(1503.74 / mpm_units_area_energy(u));
     b.critical_rate = (mpm_real)(2.271e11 / (mpm_units_area_energy(u) / u->time));
+    b.mark = MPM_MARK;
     b.floor = MPM_R(0.05);
     b.partner = -1;
     return b;
@@ -231,10 +248,13 @@ MPM_API mpm_bond mpm_bond_default(const mpm_units *u)
 MPM_API mpm_status mpm_bond_check(const mpm_bond *b, mpm_fault *f)
 {
     const int rule = (int)b->rule, mean = (int)b->average;
-    mpm_status s;
-    s = mpm_want(b->partner >= -1 && b->partner < MPM_USER_FIELDS, f, "bond partner", (mpm_real)b->partner, -1);
-    if (s == MPM_OK) s = mpm_want(rule >= 0 && rule <= MPM_BOND_USER, f, "bond rule", (mpm_real)rule, -1);
-    if (s == MPM_OK) s = mpm_want(mean >= 0 && mean <= MPM_BOND_LITERAL, f, "bond average", (mpm_real)mean, -1);
+    mpm_status s = mpm_want(b->mark == MPM_MARK, f, "bond (not from mpm_bond_default)", (mpm_real)b->mark, -1);
+    if (s == MPM_OK)
+        s = mpm_want(b->partner >= -1 && b->partner < MPM_USER_FIELDS, f, "bond partner", (mpm_real)b->partner, -1);
+    if (s == MPM_OK) s = mpm_want(rule >= 0 && rule < MPM_BOND_RULES, f, "bond rule", (mpm_real)rule, -1);
+    if (s == MPM_OK) s = mpm_want(mean >= 0 && mean < MPM_BOND_AVERAGES, f, "bond average", (mpm_real)mean, -1);
+    if (s == MPM_OK) s = mpm_want(b->width >= 0 && b->width <= 2, f, "bond width", b->width, -1);
+    if (s == MPM_OK) s = mpm_want(b->strength >= 0, f, "bond strength", b->strength, -1);
     if (s != MPM_OK || b->rule == MPM_BOND_NONE) return s;
     if (b->rule == MPM_BOND_USER) return mpm_want(b->grow != NULL, f, "bond grow", 0, -1);
     if ((s = mpm_want(b->critical > 0, f, "bond critical", b->critical, -1)) != MPM_OK) return s;
@@ -243,16 +263,21 @@ MPM_API mpm_status mpm_bond_check(const mpm_bond *b, mpm_fault *f)
     return mpm_want(b->length >= 0, f, "bond length", b->length, -1);
 }
 
-MPM_API mpm_real mpm_bond_law(mpm_bond *b, mpm_real amount, mpm_real dt)
+static inline void mpm__bond_count(int64_t *tally, int what)
+{
+    if (tally) tally[what]++;
+}
+
+MPM_API mpm_real mpm_bond_law(const mpm_bond *b, mpm_real amount, mpm_real dt, int64_t *tally)
 {
     mpm_real factor;
     if (!(amount > 0)) return 0;
     factor = 1 - mpm_log(amount / (b->critical_rate * dt));
     if (factor < b->floor) {
         factor = b->floor;
-        b->floor_hits++;
+        mpm__bond_count(tally, MPM_TALLY_BOND_FLOOR);
     }
-    b->increments++;
+    mpm__bond_count(tally, MPM_TALLY_BOND_GROWTH);
     return amount / (b->critical * factor);
 }
 
@@ -265,24 +290,24 @@ static inline mpm_real mpm__von_mises(const mpm_points *q, int32_t i)
     return mpm_sqrt(d / 2 + 3 * (yz * yz + xz * xz + xy * xy));
 }
 
-MPM_API mpm_real mpm_bond_of_point(mpm_bond *b, const mpm_world *w, int32_t i, mpm_real dt)
+MPM_API mpm_real mpm_bond_of_point(const mpm_bond *b, mpm_world *w, int32_t i)
 {
     mpm_real amount;
     if (b->rule == MPM_BOND_NONE) return 0;
     if (b->rule == MPM_BOND_USER) {
-        amount = b->grow(b->context, w, i, dt);
+        amount = b->grow(b->context, w, i);
         if (!(amount > 0)) return 0;
-        b->increments++;
+        mpm__bond_count(w->tally, MPM_TALLY_BOND_GROWTH);
         return amount;
     }
-    amount = w->points.plastic_rate[i] * dt;
+    amount = w->points.plastic_rate[i] * w->dt;
     if (b->rule == MPM_BOND_ENERGY)
         amount *= mpm__von_mises(&w->points, i) * (b->length > 0 ? b->length : w->desc.cell);
-    return mpm_bond_law(b, amount, dt);
+    return mpm_bond_law(b, amount, w->dt, w->tally);
 }
 
 /* The body other than `body` with most mass at a contact node. */
-static inline int32_t mpm__partner(const mpm_world *w, const mpm_node *node, int32_t body)
+static inline int32_t mpm__bond_partner(const mpm_world *w, const mpm_node *node, int32_t body)
 {
     int32_t n, best = -1;
     for (n = w->head[node->index]; n >= 0; n = w->node[n].next)
@@ -290,61 +315,110 @@ static inline int32_t mpm__partner(const mpm_world *w, const mpm_node *node, int
     return best < 0 ? -1 : w->node[best].body;
 }
 
-/* The surface points of a run in contact: with `grow` their D grows, with `nodes` it is added to the
-   contact nodes around them. */
-static inline void mpm__bond_run(mpm_bond *grow, const mpm_bond *nodes, mpm_world *w, const mpm_run *r, mpm_real dt)
+/* The contact node nearest to a point, as a place in its support, or -1. */
+static inline int mpm__bond_nearest(const mpm_world *w, const mpm_support *s)
 {
-    const int k = w->support[0], ky = w->support[1];
-    mpm_points *q = &w->points;
-    const int32_t *slot = mpm__run_nodes(w, r);
-    const int noted = grow && grow->partner >= 0 && grow->partner < w->desc.user_fields;
-    mpm_real *partner = noted ? q->user[grow->partner] : NULL, N[MPM__SUPPORT];
-    mpm__weights s;
-    int32_t at;
-    int n, p, a;
-    if (!(r->flags & MPM_NODE_CONTACT)) return;
-    MPM__EACH_PIECE(r, at, n) {
-        mpm__weigh(w, r, at, n, k, ky, &s);
-        for (p = 0; p < n; p++) {
-            const int32_t i = at + p;
-            int nearest = -1;
-            if (!(q->flags[i] & MPM_POINT_SURFACE)) continue;
-            mpm__products(&s, p, k, ky, N);
-            for (a = 0; a < k * ky * k; a++) {
-                mpm_node *node = &w->node[slot[a]];
-                if (!(node->flags & MPM_NODE_CONTACT) || !(N[a] > 0)) continue;
-                if (nearest < 0 || N[a] > N[nearest]) nearest = a;
-                if (!nodes) continue;
-                node->bond[0] += nodes->average == MPM_BOND_MEAN ? q->bond[i] : q->bond[i] * N[a];
-                node->bond[1] += nodes->average == MPM_BOND_WEIGHTED ? N[a] : 1;
-            }
-            if (grow && nearest >= 0) {
-                const mpm_real growth = mpm_bond_of_point(grow, w, i, dt);
-                q->bond[i] += growth;
-                if (partner && growth > 0)
-                    partner[i] = (mpm_real)(1 + mpm__partner(w, &w->node[slot[nearest]], r->body));
-            }
-        }
+    int a, nearest = -1;
+    for (a = 0; a < s->count; a++)
+        if (w->node[s->slot[a]].touch >= 0 && s->N[a] > 0 && (nearest < 0 || s->N[a] > s->N[nearest])) nearest = a;
+    return nearest;
+}
+
+/* D of a surface point grows if it is in contact. */
+static inline void mpm__bond_point(const mpm_bond *b, mpm_world *w, const mpm_run *r, int32_t i, mpm_real *partner)
+{
+    mpm_support s;
+    mpm_real growth;
+    int nearest;
+    mpm_support_of(w, r, i, &s);
+    nearest = mpm__bond_nearest(w, &s);
+    if (nearest < 0) return;
+    growth = mpm_bond_of_point(b, w, i);
+    w->points.bond[i] += growth;
+    if (partner && growth > 0)
+        partner[i] = (mpm_real)(1 + mpm__bond_partner(w, &w->node[s.slot[nearest]], r->body));
+}
+
+MPM_API void mpm_bond_grow(const mpm_bond *b, mpm_world *w)
+{
+    const int noted = b->partner >= 0 && b->partner < w->desc.user_fields;
+    mpm_real *partner = noted ? w->points.user[b->partner] : NULL;
+    int32_t n, i;
+    if (b->rule == MPM_BOND_NONE || w->pairs == 0) return;
+    for (n = 0; n < w->runs; n++) {
+        const mpm_run *r = &w->run[n];
+        if (!(r->flags & MPM_NODE_CONTACT)) continue;
+        for (i = r->first; i < r->first + r->count; i++)
+            if (w->points.flags[i] & MPM_POINT_SURFACE) mpm__bond_point(b, w, r, i, partner);
     }
 }
 
-MPM_API void mpm_bond_grow(mpm_bond *b, mpm_world *w, mpm_real dt)
+/* D of a surface point to the contact nodes around it. */
+static inline void mpm__bond_spread(const mpm_bond *b, mpm_world *w, const mpm_run *r, int32_t i)
 {
-    int32_t i;
-    if (b->rule == MPM_BOND_NONE || w->pairs == 0) return;
-    for (i = 0; i < w->runs; i++) mpm__bond_run(b, NULL, w, &w->run[i], dt);
+    const mpm_real D = w->points.bond[i];
+    mpm_support s;
+    int a;
+    mpm_support_of(w, r, i, &s);
+    for (a = 0; a < s.count; a++) {
+        const int32_t touch = w->node[s.slot[a]].touch;
+        if (touch < 0 || !(s.N[a] > 0)) continue;
+        w->touch[touch].work[0] += b->average == MPM_BOND_MEAN ? D : D * s.N[a];
+        w->touch[touch].work[1] += b->average == MPM_BOND_WEIGHTED ? s.N[a] : 1;
+    }
+}
+
+MPM_API mpm_real mpm_bond_of_pair(const mpm_bond *b, const mpm_world *w, const mpm_pair *pair)
+{
+    const mpm_real *a = w->touch[w->node[pair->a].touch].work, *c = w->touch[w->node[pair->b].touch].work;
+    const mpm_real D = ((a[1] > 0 ? a[0] / a[1] : 0) + (c[1] > 0 ? c[0] / c[1] : 0)) / 2;
+    return b->decide ? b->decide(b->context, w, pair, D) : D;
+}
+
+/* The share of its separating momentum by which a pair of nodal D is held. */
+static inline mpm_real mpm__bond_share(mpm_real D, mpm_real width)
+{
+    mpm_real share;
+    if (!(width > 0)) return D >= 1 ? MPM_R(1.0) : MPM_R(0.0);
+    share = (D - 1) / width + MPM_R(0.5);
+    return share < 0 ? 0 : share > 1 ? 1 : share;
 }
 
 MPM_API void mpm_bond_nodes(const mpm_bond *b, mpm_world *w)
 {
-    int32_t i;
+    int32_t n, i;
     if (w->pairs == 0) return;
-    for (i = 0; i < w->runs; i++) mpm__bond_run(NULL, b, w, &w->run[i], 0);
-    for (i = 0; i < w->pairs; i++) {
-        const mpm_real *a = w->node[w->pair[i].a].bond, *c = w->node[w->pair[i].b].bond;
-        w->pair[i].bond = ((a[1] > 0 ? a[0] / a[1] : 0) + (c[1] > 0 ? c[0] / c[1] : 0)) / 2;
-        if (b->decide) w->pair[i].bond = b->decide(b->context, w, &w->pair[i]);
+    for (n = 0; n < w->runs; n++) {
+        const mpm_run *r = &w->run[n];
+        if (!(r->flags & MPM_NODE_CONTACT)) continue;
+        for (i = r->first; i < r->first + r->count; i++)
+            if (w->points.flags[i] & MPM_POINT_SURFACE) mpm__bond_spread(b, w, r, i);
     }
+    for (i = 0; i < w->pairs; i++) {
+        mpm_pair *pair = &w->pair[i];
+        pair->hold = mpm__bond_share(mpm_bond_of_pair(b, w, pair), b->width);
+        if (!(b->strength > 0)) continue;
+        pair->limit = b->strength * (mpm_real)mpm_pair_area(w, pair) * w->dt;
+        if (!(pair->limit > 0)) pair->hold = 0;
+    }
+}
+
+MPM_API mpm_status mpm_bond_step(const mpm_bond *b, mpm_world *w, mpm_real dt)
+{
+    mpm_status s = mpm_locate(w, dt);
+    if (s < 0) return s;
+    mpm_p2g(w);
+    mpm_forces(w);
+    mpm_grid_update(w);
+    mpm_contact_find(w);
+    mpm_bond_grow(b, w);
+    mpm_bond_nodes(b, w);
+    mpm_contact_apply(w);
+    mpm_g2p(w);
+    mpm_musl(w);
+    if (mpm_stress(w) < 0) return w->fault.status;
+    mpm_move(w);
+    return s;
 }
 
 /* ---- measures ------------------------------------------------------------------------------- */

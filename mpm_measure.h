@@ -74,13 +74,13 @@ extern "C" {
 /* ---- rebound, shape, interface ------------------------------------------------------------------ */
 
 /* The interface between two bodies as the grid sees it: the nodes where both weigh enough for contact
-   (contact_cutoff of the description), in the last step.
+   (cutoff of their contact rule), in the last step.
    The area of a node is the smaller of the bodies' surfaces there, |sum m grad N . n| / initial density:
    the deformed surface, gaps below a cell included. In a quarter model it is a quarter. */
 typedef struct mpm_interface {
     long nodes;               /* such nodes */
-    long bonded;              /* ... whose D is 1 or more */
-    long held;                /* ... where the bond gave force in the last step */
+    long bonded;              /* ... that are held by half or more: with a bond, where D is 1 or more */
+    long held;                /* ... where the hold gave force in the last step */
     double area, bonded_area; /* [length^2] */
     double impulse[3];        /* momentum that a got from b in the last step [mass length/time] */
 } mpm_interface;
@@ -134,7 +134,7 @@ typedef struct mpm_grip {
 } mpm_grip;
 
 /* Between mpm_contact_apply and mpm_g2p. Test: 32_pull. */
-MPM_API void mpm_grip_apply(mpm_grip *g, mpm_world *w, mpm_real dt);
+MPM_API void mpm_grip_apply(mpm_grip *g, mpm_world *w);
 
 /* How strong is the bond? Two bodies, one upon the other, are drawn apart along z: the lower held fast
    below a height, the upper drawn up above another. Heights are moved to the middle between grid planes,
@@ -164,7 +164,7 @@ MPM_API mpm_status mpm_pull_begin(mpm_pull *p, const mpm_world *w, const mpm_pul
 
 /* As mpm_grip_apply, for both grips. Returns 1 when a sample is complete: force, grip_force and the peak
    are new; else 0. Test: 32_pull. */
-MPM_API int mpm_pull_apply(mpm_pull *p, mpm_world *w, mpm_real dt);
+MPM_API int mpm_pull_apply(mpm_pull *p, mpm_world *w);
 
 /* ---- estimates from the literature ------------------------------------------------------------ */
 
@@ -266,21 +266,16 @@ MPM_API mpm_interface mpm_interface_of(const mpm_world *w, int32_t a, int32_t b)
         const mpm_node *low = &w->node[pair->a], *high = &w->node[pair->b];
         const int forward = low->body == a && (b < 0 || high->body == b);
         const int backward = high->body == a && (b < 0 || low->body == b);
-        double one = 0, two = 0;
+        double area;
         if (!forward && !backward) continue;
-        for (d = 0; d < 3; d++) {
-            one += (double)(low->gradient[d] * pair->normal[d] / w->body[low->body].desc.density);
-            two -= (double)(high->gradient[d] * pair->normal[d] / w->body[high->body].desc.density);
-            f.impulse[d] += (double)(forward ? pair->impulse[d] : -pair->impulse[d]);
-        }
-        if (two < one) one = two;
-        if (one < 0) one = 0;
+        for (d = 0; d < 3; d++) f.impulse[d] += (double)(forward ? pair->impulse[d] : -pair->impulse[d]);
+        area = mpm_pair_area(w, pair);
         f.nodes++;
         f.held += pair->held;
-        f.area += one;
-        if (pair->bond < 1) continue;
+        f.area += area;
+        if (!(2 * pair->hold >= 1)) continue;
         f.bonded++;
-        f.bonded_area += one;
+        f.bonded_area += area;
     }
     return f;
 }
@@ -376,37 +371,31 @@ MPM_API mpm_splat mpm_splat_measure(const mpm_world *w, int32_t particle, int32_
 
 /* ---- pulling apart ---------------------------------------------------------------------------- */
 
-/* 1 if the grip holds this slot. */
+/* 1 if the grip holds this node. */
 static inline int mpm__gripped(const mpm_grip *g, const mpm_world *w, const mpm_node *n)
 {
-    const int32_t layer = n->index / (w->nodes_per_axis[0] * w->nodes_per_axis[1]) - w->ghost;
-    const mpm_real z = w->desc.origin[2] + (mpm_real)layer * w->desc.cell;
-    return n->body == g->body && n->mass > 0 && z >= g->low && z <= g->high;
+    mpm_real x[3];
+    mpm_node_position(w, n, x);
+    return n->body == g->body && n->mass > 0 && x[2] >= g->low && x[2] <= g->high;
 }
 
-MPM_API void mpm_grip_apply(mpm_grip *g, mpm_world *w, mpm_real dt)
+MPM_API void mpm_grip_apply(mpm_grip *g, mpm_world *w)
 {
     int32_t i;
     int d;
     g->nodes = 0;
     g->impulse[0] = g->impulse[1] = g->impulse[2] = 0;
     for (i = 0; i < w->nodes; i++) {
-        mpm_node *n = &w->node[i];
+        const mpm_node *n = &w->node[i];
         mpm_real j[3];
         if (!mpm__gripped(g, w, n)) continue;
         for (d = 0; d < 3; d++) j[d] = g->axes >> d & 1 ? n->mass * g->velocity[d] - n->momentum[d] : 0;
-        mpm__constrain(w, n, j, NULL);
-        for (d = 0; d < 3; d++) {
-            n->momentum[d] += j[d];
-            n->force[d] += j[d] / dt;
-            n->reaction[d] += j[d];
-            g->impulse[d] += (double)j[d];
-            w->ledger.impulse[d] += (double)j[d];
-        }
+        mpm_node_push(w, i, j);
+        for (d = 0; d < 3; d++) g->impulse[d] += (double)j[d];
         g->nodes++;
     }
-    g->low += g->velocity[2] * dt;
-    g->high += g->velocity[2] * dt;
+    g->low += g->velocity[2] * w->dt;
+    g->high += g->velocity[2] * w->dt;
 }
 
 /* The middle between grid planes nearest to a height. */
@@ -442,18 +431,18 @@ MPM_API mpm_status mpm_pull_begin(mpm_pull *p, const mpm_world *w, const mpm_pul
     return MPM_OK;
 }
 
-MPM_API int mpm_pull_apply(mpm_pull *p, mpm_world *w, mpm_real dt)
+MPM_API int mpm_pull_apply(mpm_pull *p, mpm_world *w)
 {
-    const double t = p->time + (double)dt, ramp = (double)p->desc.ramp;
+    const double t = p->time + (double)w->dt, ramp = (double)p->desc.ramp;
     p->grip[0].velocity[2] = t < ramp ? (mpm_real)(t / ramp) * p->desc.velocity : p->desc.velocity;
-    mpm_grip_apply(&p->grip[0], w, dt);
-    mpm_grip_apply(&p->grip[1], w, dt);
+    mpm_grip_apply(&p->grip[0], w);
+    mpm_grip_apply(&p->grip[1], w);
     p->sum[0] -= mpm_interface_of(w, p->desc.upper, p->desc.lower).impulse[2];
     p->sum[1] += p->grip[0].impulse[2];
     p->work += p->grip[0].impulse[2] * (double)p->grip[0].velocity[2];
-    p->separation += (double)(p->grip[0].velocity[2] * dt);
+    p->separation += (double)(p->grip[0].velocity[2] * w->dt);
     p->time = t;
-    p->since += (double)dt;
+    p->since += (double)w->dt;
     if (p->since < (double)p->desc.sample * (1 - 1e-9)) return 0;
     p->force = p->sum[0] / p->since;
     p->grip_force = p->sum[1] / p->since;

@@ -26,27 +26,26 @@ int main(void)
     for (n = 0; n < s.steps; n++) {
         mpm_world *w = &s.world;
         t[LOCATE] = clock();
-        while (mpm_locate(w) == MPM_ERR_FULL)
-            if (mpm_reserve(w, NULL, 0) < 0) return 1;
+        if (mpm_locate(w, s.dt) < 0) return 1;
         t[P2G] = clock();
         mpm_p2g(w);
         t[FORCES] = clock();
-        mpm_forces(w, s.dt);
+        mpm_forces(w);
         t[GRID] = clock();
-        mpm_grid_update(w, s.dt);
+        mpm_grid_update(w);
         t[CONTACT] = clock();
         mpm_contact_find(w);
-        mpm_bond_grow(&s.bond, w, s.dt);
+        mpm_bond_grow(&s.bond, w);
         mpm_bond_nodes(&s.bond, w);
-        mpm_contact_apply(w, s.dt);
+        mpm_contact_apply(w);
         t[G2P] = clock();
-        mpm_g2p(w, s.dt);
+        mpm_g2p(w);
         t[MUSL] = clock();
-        mpm_musl(w, s.dt);
+        mpm_musl(w);
         t[STRESS] = clock();
-        if (mpm_stress(w, s.dt) < 0) return 1;
+        if (mpm_stress(w) < 0) return 1;
         t[MOVE] = clock();
-        mpm_move(w, s.dt);
+        mpm_move(w);
         t[PHASES] = clock();
         for (i = 0; i < PHASES; i++) spent[i] += (double)(t[i + 1] - t[i]) / (double)CLOCKS_PER_SEC;
         if (n % 10 == 0) { /* every field of every point read once */

@@ -97,9 +97,9 @@ static int write_summary(const impact *s, const impact_case *c, const output *o,
                        case_share(r.all.internal - s->start.internal - r.all.plastic, start));
     mpm_io_json_number(&j, "energy_absorbed_fraction", case_share(w->ledger.absorbed, start));
     mpm_io_json_number(&j, "energy_contact_fraction", case_share(w->ledger.contact, start));
-    mpm_io_json_number(&j, "energy_bond_fraction", case_share(w->ledger.bond, start));
-    mpm_io_json_integer(&j, "floor_hits", s->bond.floor_hits);
-    mpm_io_json_integer(&j, "bond_increments", s->bond.increments);
+    mpm_io_json_number(&j, "energy_bond_fraction", case_share(w->ledger.hold, start));
+    mpm_io_json_integer(&j, "floor_hits", (long long)w->tally[MPM_TALLY_BOND_FLOOR]);
+    mpm_io_json_integer(&j, "bond_increments", (long long)w->tally[MPM_TALLY_BOND_GROWTH]);
     mpm_io_json_integer(&j, "shear_floor_hits", (long long)w->tally[MPM_TALLY_SHEAR_FLOOR]);
     mpm_io_json_integer(&j, "iteration_hits", (long long)w->tally[MPM_TALLY_ITERATION]);
     mpm_io_json_integer(&j, "sorts", w->sorts);
@@ -139,10 +139,11 @@ static void print_table(const impact *s, const impact_case *c, double cpu)
            100 * case_share(r.all.internal - s->start.internal - r.all.plastic, start));
     printf("  energy: absorbed by dampers     %10.3f %%    lost in contact %.3f %%, in the bond %.3f %%\n",
            100 * case_share(w->ledger.absorbed, start), 100 * case_share(w->ledger.contact, start),
-           100 * case_share(w->ledger.bond, start));
+           100 * case_share(w->ledger.hold, start));
     printf("  errors: mass %.1e, momentum %.1e, energy unaccounted %.3f %%\n", r.mass_error, r.momentum_error,
            100 * r.energy_unaccounted);
-    printf("  bond floor acted                %10ld times of %ld\n", s->bond.floor_hits, s->bond.increments);
+    printf("  bond floor acted                %10ld times of %ld\n", (long)w->tally[MPM_TALLY_BOND_FLOOR],
+           (long)w->tally[MPM_TALLY_BOND_GROWTH]);
     printf("  %ld steps of %.4g ps, %.1f s CPU, %.2f million point-steps/s, %.0f bytes per point\n", w->steps,
            (double)s->dt * 1e6, cpu, cpu > 0 ? 1e-6 * (double)w->steps * (double)r.all.points / cpu : 0,
            (double)mpm_bytes_used(w) / (double)r.all.points);
@@ -152,29 +153,23 @@ static void print_table(const impact *s, const impact_case *c, double cpu)
 static int run(impact *s, const impact_case *c, output *o)
 {
     mpm_world *w = &s->world;
-    const mpm_real dt = s->dt;
     output_start(o, w);
     for (;;) {
         if (output_due(o, w, s->steps) && !write_frame(s, c, o)) return 0;
         if (w->steps >= s->steps) break;
 
-        mpm_status status = mpm_locate(w);           /* points in cell order, nodes for every body */
-        if (status == MPM_ERR_FULL) {                /* ejected points touch ever more nodes */
-            if (mpm_reserve(w, NULL, 0) < 0) return report(&w->fault, "growing the grid");
-            continue;
-        }
-        if (status < 0) return report(&w->fault, "locate");
+        if (mpm_locate(w, s->dt) < 0) return report(&w->fault, "locate"); /* points in cell order, their nodes */
         mpm_p2g(w);                                  /* A 3.23, 3.24 */
-        mpm_forces(w, dt);                           /* A 3.25 - 3.27, 3.45, 3.46 */
-        mpm_grid_update(w, dt);                      /* A 3.28 */
+        mpm_forces(w);                               /* A 3.25 - 3.27, 3.45, 3.46 */
+        mpm_grid_update(w);                          /* A 3.28 */
         mpm_contact_find(w);                         /* A 3.30 */
-        mpm_bond_grow(&s->bond, w, dt);              /* A 4.16, 4.17 */
+        mpm_bond_grow(&s->bond, w);                  /* A 4.16, 4.17 */
         mpm_bond_nodes(&s->bond, w);                 /* A 4.6, 4.7 */
-        mpm_contact_apply(w, dt);                    /* A 3.29, 3.31 */
-        mpm_g2p(w, dt);                              /* A 3.32, velocities */
-        mpm_musl(w, dt);                             /* A 3.33, 3.34 */
-        if (mpm_stress(w, dt) < 0) return report(&w->fault, "stress"); /* A 3.35 - 3.44 */
-        mpm_move(w, dt);                             /* A 3.32, positions */
+        mpm_contact_apply(w);                        /* A 3.29, 3.31 */
+        mpm_g2p(w);                                  /* A 3.32, velocities */
+        mpm_musl(w);                                 /* A 3.33, 3.34 */
+        if (mpm_stress(w) < 0) return report(&w->fault, "stress"); /* A 3.35 - 3.44 */
+        mpm_move(w);                                 /* A 3.32, positions */
 
         output_progress(o, w, s->steps);
     }

@@ -184,10 +184,9 @@ static inline mpm_desc impact_grid(const impact_case *c)
     }
     d.cells[2] = above + below;
     d.origin[2] = (mpm_real)(shift - below * c->cell);
-    d.friction = (mpm_real)c->friction;
-    d.separation = c->separation;
-    d.bond_width = (mpm_real)c->bond_width;
-    d.normal = (mpm_normal_rule)case_word("ranked|mvg|average|vertical|logistic", c->normal);
+    d.contact.friction = (mpm_real)c->friction;
+    d.contact.touch = c->separation;
+    d.contact.normal = (mpm_normal_rule)case_word(MPM_NAMES(MPM_NORMAL_LIST), c->normal);
     return d;
 }
 
@@ -219,12 +218,13 @@ static inline mpm_bond impact_bond(const impact_case *c)
 {
     const mpm_units units = mpm_units_um_us_ng();
     mpm_bond b = mpm_bond_default(&units);
-    b.rule = (mpm_bond_rule)case_word("none|energy|strain", c->bond);
-    b.average = (mpm_bond_average)case_word("mean|weighted|literal", c->bond_average);
+    b.rule = (mpm_bond_rule)case_word(MPM_NAMES(MPM_BOND_RULE_LIST), c->bond);
+    b.average = (mpm_bond_average)case_word(MPM_NAMES(MPM_BOND_AVERAGE_LIST), c->bond_average);
     b.critical = (mpm_real)(b.rule == MPM_BOND_STRAIN ? c->eps_c : c->gc);
     b.critical_rate = (mpm_real)(b.rule == MPM_BOND_STRAIN ? c->epsdot_c : c->gdot);
     b.floor = (mpm_real)c->floor;
     b.length = (mpm_real)c->bond_length;
+    b.width = (mpm_real)c->bond_width;
     return b;
 }
 
@@ -301,26 +301,7 @@ static inline int impact_begin(impact *s, const impact_case *c, char *message, s
 
 /* One whole step with bonding: the loop of examples/impact.c for programs that need not show it.
    Returns MPM_OK, MPM_RETIRED, or an error with world.fault. */
-static inline mpm_status impact_step(impact *s)
-{
-    mpm_world *w = &s->world;
-    mpm_status status;
-    while ((status = mpm_locate(w)) == MPM_ERR_FULL)
-        if (mpm_reserve(w, NULL, 0) < 0) return w->fault.status;
-    if (status < 0) return status;
-    mpm_p2g(w);
-    mpm_forces(w, s->dt);
-    mpm_grid_update(w, s->dt);
-    mpm_contact_find(w);
-    mpm_bond_grow(&s->bond, w, s->dt);
-    mpm_bond_nodes(&s->bond, w);
-    mpm_contact_apply(w, s->dt);
-    mpm_g2p(w, s->dt);
-    mpm_musl(w, s->dt);
-    if (mpm_stress(w, s->dt) < 0) return w->fault.status;
-    mpm_move(w, s->dt);
-    return status;
-}
+static inline mpm_status impact_step(impact *s) { return mpm_bond_step(&s->bond, &s->world, s->dt); }
 
 /* What came out. Velocities are along z (m/s), lengths in um; areas are those of the whole particle. */
 typedef struct impact_result {
@@ -381,7 +362,7 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
     }
     r.momentum_error = error / (momentum > 0 ? momentum : 1);
     r.energy_error = (r.all.kinetic + r.all.internal + l->absorbed - energy) / (energy > 0 ? energy : 1);
-    r.energy_unaccounted = r.energy_error + (l->contact + l->bond + l->walls) / (energy > 0 ? energy : 1);
+    r.energy_unaccounted = r.energy_error + (l->contact + l->hold + l->walls) / (energy > 0 ? energy : 1);
     return r;
 }
 

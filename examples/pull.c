@@ -64,23 +64,17 @@ static mpm_status describe(mpm_pull *p, const impact *s, const impact_case *c, c
 static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, curve *c)
 {
     mpm_world *w = &s->world;
-    const mpm_real dt = s->dt;
     const int whole = impact_copies(s);
     mpm_interface met;
     do {
-        mpm_status status = mpm_locate(w);
-        if (status == MPM_ERR_FULL) {
-            if (mpm_reserve(w, NULL, 0) < 0) return report(&w->fault, "growing the grid");
-            continue;
-        }
-        if (status < 0) return report(&w->fault, "locate");
+        if (mpm_locate(w, s->dt) < 0) return report(&w->fault, "locate");
         mpm_p2g(w);
-        mpm_forces(w, dt);
-        mpm_grid_update(w, dt);
+        mpm_forces(w);
+        mpm_grid_update(w);
         mpm_contact_find(w);
         mpm_bond_nodes(&s->bond, w); /* without mpm_bond_grow: the bond is made */
-        mpm_contact_apply(w, dt);
-        if (mpm_pull_apply(p, w, dt)) { /* the grips give their nodes their velocity */
+        mpm_contact_apply(w);
+        if (mpm_pull_apply(p, w)) { /* the grips give their nodes their velocity */
             met = mpm_interface_of(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
             c->separation[c->count] = (mpm_real)p->separation;
             c->stress[c->count++] = (mpm_real)(p->force / p->desc.area);
@@ -94,10 +88,10 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
             mpm_io_csv_integer(table, met.held);
             if (met.nodes == 0) return 1;
         }
-        mpm_g2p(w, dt);
-        mpm_musl(w, dt);
-        if (mpm_stress(w, dt) < 0) return report(&w->fault, "stress");
-        mpm_move(w, dt);
+        mpm_g2p(w);
+        mpm_musl(w);
+        if (mpm_stress(w) < 0) return report(&w->fault, "stress");
+        mpm_move(w);
     } while (p->separation < o->distance && c->count < c->room);
     return 1;
 }

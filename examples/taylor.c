@@ -108,25 +108,19 @@ static void print_table(const taylor *s, const taylor_case *c, const taylor_resu
 static int run(taylor *s, const taylor_case *c, output *o)
 {
     mpm_world *w = &s->world;
-    const mpm_real dt = s->dt;
     output_start(o, w);
     for (;;) {
         if (output_due(o, w, s->steps) && !write_frame(s, c, o)) return 0;
         if (w->steps >= s->steps) break;
 
-        mpm_status status = mpm_locate(w);   /* points in cell order, nodes for the body */
-        if (status == MPM_ERR_FULL) {        /* a spreading foot touches ever more nodes */
-            if (mpm_reserve(w, NULL, 0) < 0) return report(&w->fault, "growing the grid");
-            continue;
-        }
-        if (status < 0) return report(&w->fault, "locate");
+        if (mpm_locate(w, s->dt) < 0) return report(&w->fault, "locate"); /* points in cell order, their nodes */
         mpm_p2g(w);                          /* mass and momentum to the nodes */
-        mpm_forces(w, dt);                   /* of the stress */
-        mpm_grid_update(w, dt);              /* nodal momentum; the wall acts here */
-        mpm_g2p(w, dt);                      /* velocity of the points */
-        mpm_musl(w, dt);                     /* nodal velocity from it */
-        if (mpm_stress(w, dt) < 0) return report(&w->fault, "stress"); /* strain, density, stress */
-        mpm_move(w, dt);                     /* position of the points */
+        mpm_forces(w);                       /* of the stress */
+        mpm_grid_update(w);                  /* nodal momentum; the wall acts here */
+        mpm_g2p(w);                          /* velocity of the points */
+        mpm_musl(w);                         /* nodal velocity from it */
+        if (mpm_stress(w) < 0) return report(&w->fault, "stress"); /* strain, density, stress */
+        mpm_move(w);                         /* position of the points */
 
         output_progress(o, w, s->steps);
     }

@@ -160,14 +160,7 @@ static inline int taylor_begin(taylor *s, const taylor_case *c, char *message, s
     return 1;
 }
 
-/* One step, growing the grid's memory when it must. */
-static inline mpm_status taylor_step(taylor *s)
-{
-    mpm_status status;
-    while ((status = mpm_step(&s->world, s->dt)) == MPM_ERR_FULL)
-        if (mpm_reserve(&s->world, NULL, 0) != MPM_OK) return MPM_ERR_MEMORY;
-    return status;
-}
+static inline mpm_status taylor_step(taylor *s) { return mpm_step(&s->world, s->dt); }
 
 /* ---- measures -------------------------------------------------------------------------------- */
 

@@ -76,7 +76,7 @@ static void spin(void)
         w.points.stress[1][i] = -100;
     }
     for (n = 0; n < 125; n++) { /* an eighth of a revolution about z, counter-clockwise */
-        mpm_locate(&w);
+        mpm_locate(&w, MPM_R(1.0));
         mpm_p2g(&w);
         for (i = 0; i < w.nodes; i++) {
             mpm_node *node = &w.node[i];
@@ -88,8 +88,8 @@ static void spin(void)
             node->momentum[0] = node->mass * node->velocity[0];
             node->momentum[1] = node->mass * node->velocity[1];
         }
-        mpm_stress(&w, 1);
-        mpm_move(&w, 1);
+        mpm_stress(&w);
+        mpm_move(&w);
     }
     i = w.points.count / 2;
     CHECK_NEAR("spin: xx after an eighth of a turn", w.points.stress[0][i], 0, 0.01);
@@ -192,7 +192,7 @@ static double collide(double preset, double *momentum, double *energy, double *d
     t1 = mpm_body_totals(&w, -1);
     after = mpm_body_totals(&w, 0).momentum[2] - mpm_body_totals(&w, 1).momentum[2];
     *momentum = (t1.momentum[2] - t0.momentum[2]) / before;
-    *energy = (t1.kinetic + t1.internal + w.ledger.contact + w.ledger.bond - t0.kinetic) / t0.kinetic;
+    *energy = (t1.kinetic + t1.internal + w.ledger.contact + w.ledger.hold - t0.kinetic) / t0.kinetic;
     *distance = (mpm_body_totals(&w, 0).low[2] - mpm_body_totals(&w, 1).high[2]) / 5;
     mpm_free(&w);
     return -after / before;
@@ -235,8 +235,8 @@ static void three_bodies(mpm_contact_law law, const char *name)
     char line[100];
     a.velocity[0] = 300;
     b.velocity[0] = -250;
-    d.contact = law;
-    d.friction = MPM_R(0.3);
+    d.contact.law = law;
+    d.contact.friction = MPM_R(0.3);
     mpm_init(&w, &d, NULL, 0);
     mpm_body_add(&w, &a);
     mpm_body_add(&w, &b);
@@ -276,11 +276,11 @@ static void normals(void)
         mpm_world w;
         int32_t i;
         int down = 1;
-        d.normal = rule;
+        d.contact.normal = rule;
         mpm_init(&w, &d, NULL, 0);
         mpm_body_add(&w, &ball);
         mpm_body_add(&w, &slab);
-        mpm_locate(&w);
+        mpm_locate(&w, 1);
         mpm_p2g(&w);
         mpm_contact_find(&w);
         for (i = 0; i < w.pairs; i++) {

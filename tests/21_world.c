@@ -36,17 +36,20 @@ static void bad_descriptions(void)
     d.cells[0] = d.cells[1] = d.cells[2] = 100000;
     refuses_desc("cells in all", d, MPM_ERR_ARGUMENT);
     d = good;
-    d.friction = -1;
-    refuses_desc("friction", d, MPM_ERR_ARGUMENT);
+    d.contact.friction = -1;
+    refuses_desc("contact.friction", d, MPM_ERR_ARGUMENT);
     d = good;
-    d.contact_cutoff = -1;
-    refuses_desc("contact_cutoff", d, MPM_ERR_ARGUMENT);
+    d.contact.cutoff = -1;
+    refuses_desc("contact.cutoff", d, MPM_ERR_ARGUMENT);
     d = good;
     d.user_fields = MPM_USER_FIELDS + 1;
     refuses_desc("user_fields", d, MPM_ERR_ARGUMENT);
     d = good;
-    d.points = 0;
+    d.points = -1;
     refuses_desc("points", d, MPM_ERR_ARGUMENT);
+    d = good;
+    d.mark = 0;
+    refuses_desc("desc (not from mpm_desc_default)", d, MPM_ERR_ARGUMENT);
     d = good;
     d.gravity[2] = nan;
     refuses_desc("gravity", d, MPM_ERR_NAN);
@@ -63,14 +66,14 @@ static void bad_choices(void)
     d.basis = (mpm_basis)(MPM_GIMP + 1);
     refuses_desc("basis", d, MPM_ERR_ARGUMENT);
     d = good;
-    d.contact = (mpm_contact_law)(MPM_CONTACT_NONE + 1);
-    refuses_desc("contact", d, MPM_ERR_ARGUMENT);
+    d.contact.law = (mpm_contact_law)(MPM_CONTACT_USER + 1);
+    refuses_desc("contact.law", d, MPM_ERR_ARGUMENT);
     d = good;
-    d.normal = (mpm_normal_rule)(MPM_NORMAL_LOGISTIC + 1);
-    refuses_desc("normal", d, MPM_ERR_ARGUMENT);
+    d.contact.normal = (mpm_normal_rule)(MPM_NORMAL_LOGISTIC + 1);
+    refuses_desc("contact.normal", d, MPM_ERR_ARGUMENT);
     d = good;
-    d.separation = -1;
-    refuses_desc("separation", d, MPM_ERR_ARGUMENT);
+    d.contact.touch = -1;
+    refuses_desc("contact.touch", d, MPM_ERR_ARGUMENT);
     d = good;
     d.side[3] = (mpm_side)(MPM_SIDE_WALL + 1);
     refuses_desc("side", d, MPM_ERR_ARGUMENT);
@@ -79,7 +82,7 @@ static void bad_choices(void)
     d.cells[1] = 0;
     CHECK_EQUAL("in two dimensions cells[1] is ignored", mpm_desc_check(&d, NULL), MPM_OK);
     memset(&d, 0, sizeof d);
-    CHECK_EQUAL("a description of zeros lacks a cell", mpm_desc_check(&d, NULL), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("a description of zeros is none", mpm_desc_check(&d, NULL), MPM_ERR_ARGUMENT);
 }
 
 static void bad_bodies(void)
@@ -110,11 +113,20 @@ static void bad_bodies(void)
     b.shape = mpm_box(2, 2, 2, 4, 4, 4);
     CHECK_EQUAL("overlap, inside", mpm_body_add(&w, &b), MPM_ERR_OVERLAP);
     b.shape.kind = (mpm_shape_kind)(MPM_SHAPE_BOX + 1);
+    CHECK_EQUAL("a shape of the user's without a function", mpm_body_add(&w, &b), MPM_ERR_ARGUMENT);
+    b.shape.kind = (mpm_shape_kind)(MPM_SHAPE_USER + 1);
     CHECK_EQUAL("no such shape", mpm_body_add(&w, &b), MPM_ERR_ARGUMENT);
+    memset(&b, 0, sizeof b);
+    CHECK_EQUAL("a body of zeros is none", mpm_body_add(&w, &b), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... and told so", !strcmp(w.fault.field, "body (not from mpm_body_desc_default)"));
+    b = good;
+    b.absorb = MPM_FACE_BOTTOM;
+    CHECK_EQUAL("a sphere has no face for a damper", mpm_body_add(&w, &b), MPM_ERR_ARGUMENT);
     mpm_free(&w);
     CHECK_EQUAL("more points than can be counted", mpm_shape_count(&d, &good.shape, MPM_R(1e-3)), 0);
     d.geometry = MPM_AXISYMMETRIC;
     mpm_init(&w, &d, NULL, 0);
+    b = good;
     b.shape = mpm_box(MPM_R(-0.25), 0, 2, 2, 1, 4);
     CHECK_EQUAL("a ring at radius 0", mpm_body_add(&w, &b), MPM_ERR_OUTSIDE);
     mpm_free(&w);

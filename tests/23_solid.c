@@ -62,8 +62,8 @@ static void corner(const int *order, mpm_contact_law law, double *worst, double 
     double scale = 0, sum[4][3];
     int32_t i;
     int n, k, a;
-    d.contact = law;
-    d.friction = MPM_R(0.3);
+    d.contact.law = law;
+    d.contact.friction = MPM_R(0.3);
     mpm_init(&w, &d, NULL, 0);
     for (k = 0; k < 4; k++) {
         const mpm_real *x = place[order[k]], r = MPM_R(1.2) + MPM_R(0.05) * (mpm_real)order[k];
@@ -136,7 +136,7 @@ static void weld(void)
     int n, k, light = 0;
     a.velocity[0] = 20;
     b.velocity[0] = -20;
-    d.contact = MPM_CONTACT_WELD;
+    d.contact.law = MPM_CONTACT_WELD;
     mpm_init(&w, &d, NULL, 0);
     mpm_body_add(&w, &a);
     mpm_body_add(&w, &b);

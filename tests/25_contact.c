@@ -12,7 +12,7 @@ static void meet(mpm_world *w, const mpm_desc *d, const mpm_body_desc *a, const 
     CHECK_EQUAL("a world of two bodies", mpm_init(w, d, NULL, 0), MPM_OK);
     CHECK_EQUAL("... the first", mpm_body_add(w, a), MPM_OK);
     CHECK_EQUAL("... the second", mpm_body_add(w, b), MPM_OK);
-    mpm_locate(w);
+    mpm_locate(w, MPM_R(1e-5));
     mpm_p2g(w);
     mpm_contact_find(w);
 }
@@ -36,7 +36,7 @@ static double angle(mpm_basis basis, mpm_normal_rule rule)
         mpm_world w;
         int32_t i;
         d.basis = basis;
-        d.normal = rule;
+        d.contact.normal = rule;
         meet(&w, &d, &a, &b);
         for (i = 0; i < w.pairs; i++, n++) {
             const mpm_real *q = w.pair[i].normal;
@@ -71,8 +71,8 @@ static void flat_faces(mpm_geometry geometry, mpm_basis basis, const char *name)
     char line[100];
     d.geometry = geometry;
     d.basis = basis;
-    d.normal = MPM_NORMAL_LOGISTIC;
-    d.separation = 1;
+    d.contact.normal = MPM_NORMAL_LOGISTIC;
+    d.contact.touch = 1;
     d.side[0] = d.side[2] = MPM_SIDE_SYMMETRY;
     meet(&w, &d, &top, &low);
     for (i = 0; i < w.pairs; i++) {
@@ -100,7 +100,7 @@ static double touch(int separation, double gap)
     mpm_world w;
     int s;
     double when;
-    d.separation = separation;
+    d.contact.touch = separation;
     for (s = 0; s < 4; s++) d.side[s] = MPM_SIDE_SYMMETRY;
     mpm_init(&w, &d, NULL, 0);
     mpm_body_add(&w, &top);
@@ -128,7 +128,7 @@ static void light_nodes(void)
     mpm_world w;
     int k;
     for (k = 0; k < 2; k++) {
-        d.contact_cutoff = k ? 0 : MPM_R(1e-3);
+        d.contact.cutoff = k ? 0 : MPM_R(1e-3);
         meet(&w, &d, &top, &low);
         if (k) CHECK_TRUE("light nodes: without a cutoff they have contact", w.pairs > 0);
         else CHECK_EQUAL("light nodes: below the cutoff they have none", w.pairs, 0);

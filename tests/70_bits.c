@@ -51,8 +51,8 @@ static uint64_t world_bits(const mpm_world *w)
         hash = mix(mix_double(hash, (double)p->bond[i]), p->flags[i]);
     }
     free(at);
-    hash = mix_double(mix_double(mix_double(hash, l->absorbed), l->contact), l->bond);
-    hash = mix_double(mix_double(hash, l->walls), l->gravity);
+    hash = mix_double(mix_double(mix_double(hash, l->absorbed), l->contact), l->hold);
+    hash = mix_double(mix_double(hash, l->walls), l->work);
     for (d = 0; d < 3; d++) hash = mix_double(hash, l->impulse[d]);
     return hash;
 }
@@ -182,10 +182,10 @@ static uint64_t bits_elastic(void)
     uint64_t hash = 0;
     mpm_world w;
     int n;
-    d.friction = d.wall_friction = MPM_R(0.3);
+    d.contact.friction = d.wall_friction = MPM_R(0.3);
     d.side[4] = MPM_SIDE_WALL;
     d.side[0] = MPM_SIDE_FIXED;
-    d.normal = MPM_NORMAL_AVERAGE;
+    d.contact.normal = MPM_NORMAL_AVERAGE;
     a.velocity[0] = 80;
     b.absorb = MPM_FACE_RIM;
     if (mpm_init(&w, &d, NULL, 0) != MPM_OK || mpm_body_add(&w, &a) != MPM_OK || mpm_body_add(&w, &b) != MPM_OK)

@@ -163,44 +163,35 @@ static inline mpm_status manufactured_begin(manufactured *m, mpm_world *w)
     return MPM_OK;
 }
 
-/* The body force to the nodes, sum m f N (A 3.26). mpm_musl maps whatever the points hold as their velocity, so
-   for a moment that is the force. X: first places of the points, by id; keep: room for three numbers per point. */
-static inline void manufactured_force(const manufactured *m, mpm_world *w, const double *X, mpm_real *keep, mpm_real dt)
+/* The body force to the nodes, sum m f N (A 3.26). X: first places of the points, by id. */
+static inline void manufactured_force(const manufactured *m, mpm_world *w, const double *X)
 {
-    const int32_t n = w->body[0].active;
     double u[3], v[3], f[3];
-    int32_t i;
+    mpm_support s;
+    mpm_real push[3];
+    int32_t k, i;
     int d;
-    for (i = 0; i < n; i++) {
-        manufactured_at(m, X + 3 * w->points.id[i], (double)w->time, u, v, f);
-        for (d = 0; d < 3; d++) {
-            keep[3 * i + d] = w->points.v[d][i];
-            w->points.v[d][i] = (mpm_real)f[d];
-        }
-    }
-    mpm_musl(w, dt);
-    for (i = 0; i < n; i++)
-        for (d = 0; d < 3; d++) w->points.v[d][i] = keep[3 * i + d];
-    for (i = 0; i < w->nodes; i++)
-        for (d = 0; d < 3; d++) {
-            w->node[i].force[d] += w->node[i].mass * w->node[i].velocity[d];
-            w->node[i].velocity[d] = 0;
+    for (k = 0; k < w->runs; k++)
+        for (i = w->run[k].first; i < w->run[k].first + w->run[k].count; i++) {
+            manufactured_at(m, X + 3 * w->points.id[i], (double)w->time, u, v, f);
+            for (d = 0; d < 3; d++) push[d] = w->points.mass[i] * (mpm_real)f[d];
+            mpm_support_of(w, &w->run[k], i, &s);
+            mpm_push(w, &s, push);
         }
 }
 
-static inline mpm_status manufactured_step(const manufactured *m, mpm_world *w, const double *X, mpm_real *keep,
-                                           mpm_real dt)
+static inline mpm_status manufactured_step(const manufactured *m, mpm_world *w, const double *X, mpm_real dt)
 {
-    mpm_status s = mpm_locate(w);
+    mpm_status s = mpm_locate(w, dt);
     if (s < 0) return s;
     mpm_p2g(w);
-    mpm_forces(w, dt);
-    manufactured_force(m, w, X, keep, dt);
-    mpm_grid_update(w, dt);
-    mpm_g2p(w, dt);
-    mpm_musl(w, dt);
-    if (mpm_stress(w, dt) < 0) return w->fault.status;
-    mpm_move(w, dt);
+    mpm_forces(w);
+    manufactured_force(m, w, X);
+    mpm_grid_update(w);
+    mpm_g2p(w);
+    mpm_musl(w);
+    if (mpm_stress(w) < 0) return w->fault.status;
+    mpm_move(w);
     return s;
 }
 
@@ -226,16 +217,13 @@ static inline double manufactured_distance(const manufactured *m, const mpm_worl
 static inline double manufactured_error(manufactured *m)
 {
     double *X = NULL, u[3], v[3], f[3], error = -1;
-    mpm_real *keep = NULL, dt;
+    mpm_real dt;
     mpm_world w;
     int32_t i, whole = 0;
     long n = 0, steps = 0;
     int d;
-    if (manufactured_begin(m, &w) == MPM_OK) {
-        X = (double *)malloc((size_t)w.points.count * 3 * sizeof *X);
-        keep = (mpm_real *)malloc((size_t)w.points.count * 3 * sizeof *keep);
-    }
-    if (X && keep) {
+    if (manufactured_begin(m, &w) == MPM_OK) X = (double *)malloc((size_t)w.points.count * 3 * sizeof *X);
+    if (X) {
         steps = (long)ceil(m->time / (double)mpm_time_step(&w, (mpm_real)m->factor));
         dt = (mpm_real)(m->time / (double)steps);
         for (i = 0; i < w.points.count; i++) {
@@ -245,13 +233,12 @@ static inline double manufactured_error(manufactured *m)
             for (d = 0; d < 3; d++) w.points.v[d][i] = (mpm_real)v[d];
         }
         for (n = 0; n < steps; n++) {
-            if (manufactured_step(m, &w, X, keep, dt) < 0) break;
+            if (manufactured_step(m, &w, X, dt) < 0) break;
             if (n == 0) whole = w.body[0].active;
         }
         if (n == steps && w.body[0].active == whole) error = manufactured_distance(m, &w, X) / m->amplitude;
     }
     free(X);
-    free(keep);
     mpm_free(&w);
     return error;
 }

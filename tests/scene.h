@@ -47,27 +47,10 @@ static inline mpm_desc scene_grid(double cell, int nx, int ny, int nz, double x,
     return d;
 }
 
-/* A step with bonding, growing the grid's memory when it must. */
-static inline mpm_status scene_step(mpm_world *w, mpm_bond *b, mpm_real dt)
+/* A step, with or without bonding. */
+static inline mpm_status scene_step(mpm_world *w, const mpm_bond *b, mpm_real dt)
 {
-    mpm_status s;
-    while ((s = mpm_locate(w)) == MPM_ERR_FULL)
-        if (mpm_reserve(w, NULL, 0) != MPM_OK) return MPM_ERR_MEMORY;
-    if (s < 0) return s;
-    mpm_p2g(w);
-    mpm_forces(w, dt);
-    mpm_grid_update(w, dt);
-    mpm_contact_find(w);
-    if (b) {
-        mpm_bond_grow(b, w, dt);
-        mpm_bond_nodes(b, w);
-    }
-    mpm_contact_apply(w, dt);
-    mpm_g2p(w, dt);
-    mpm_musl(w, dt);
-    if (mpm_stress(w, dt) < 0) return w->fault.status;
-    mpm_move(w, dt);
-    return s;
+    return b ? mpm_bond_step(b, w, dt) : mpm_step(w, dt);
 }
 
 #endif

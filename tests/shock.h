@@ -121,7 +121,7 @@ static inline mpm_status shock_begin(shock *s, mpm_world *w)
     d.cells[2] = 2 * (s->cells + margin);
     d.origin[2] = -(mpm_real)(s->cells + margin);
     d.side[0] = d.side[1] = MPM_SIDE_SYMMETRY;
-    d.normal = MPM_NORMAL_FIXED;
+    d.contact.normal = MPM_NORMAL_FIXED;
     d.bodies = 2;
     d.points = 2 * s->cells * s->per_cell * s->per_cell;
     if ((e = mpm_init(w, &d, NULL, 0)) < 0) return e;

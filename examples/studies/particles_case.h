@@ -336,10 +336,10 @@ static inline int particles_summary(const impact *s, const particles_case *q, co
     mpm_io_json_number(&j, "mass_error", (sums.mass - s->start.mass) / s->start.mass);
     mpm_io_json_number(&j, "energy_unaccounted",
                        case_share(sums.kinetic + sums.internal + w->ledger.absorbed + w->ledger.contact +
-                                      w->ledger.bond + w->ledger.walls - s->start.kinetic - s->start.internal,
+                                      w->ledger.hold + w->ledger.walls - s->start.kinetic - s->start.internal,
                                   s->start.kinetic));
-    mpm_io_json_integer(&j, "floor_hits", s->bond.floor_hits);
-    mpm_io_json_integer(&j, "bond_increments", s->bond.increments);
+    mpm_io_json_integer(&j, "floor_hits", (long long)s->world.tally[MPM_TALLY_BOND_FLOOR]);
+    mpm_io_json_integer(&j, "bond_increments", (long long)s->world.tally[MPM_TALLY_BOND_GROWTH]);
     mpm_io_json_number(&j, "cpu_seconds", q->out.cpu);
     options_json(&j, o, n);
     return mpm_io_json_end(&j, &fault) >= 0 || report(&fault, path);
@@ -453,8 +453,7 @@ static inline mpm_status particles_checkpoint(impact *s, particles_case *q, int 
     blob[n++] = particles_blob(name, &mark, sizeof mark);
     n += mpm_io_world_blobs(&s->world, blob + n);
     blob[n++] = particles_blob("start", &s->start, sizeof s->start);
-    blob[n++] = particles_blob("floor hits", &s->bond.floor_hits, sizeof s->bond.floor_hits);
-    blob[n++] = particles_blob("bond increments", &s->bond.increments, sizeof s->bond.increments);
+    blob[n++] = particles_blob("tally", s->world.tally, sizeof s->world.tally);
     blob[n++] = particles_blob("frame", &q->out.frame, sizeof q->out.frame);
     blob[n++] = particles_blob("cpu seconds", &q->out.cpu, sizeof q->out.cpu);
     return write ? mpm_io_checkpoint_write(path, blob, n, fault) : mpm_io_checkpoint_read(path, blob, n, fault);

@@ -30,9 +30,9 @@ static void disks_begin(mpm_world *w, mpm_material *m, int n, const method *how)
     mpm_body_desc b = scene_body(m, mpm_sphere(MPM_R(0.25), 0, MPM_R(0.25), (mpm_real)radius), cell / 2, speed);
     d.geometry = MPM_PLANE_STRAIN;
     d.basis = how->basis;
-    d.contact = how->law;
-    d.separation = how->points;
-    if (how->points) d.normal = MPM_NORMAL_LOGISTIC;
+    d.contact.law = how->law;
+    d.contact.touch = how->points;
+    if (how->points) d.contact.normal = MPM_NORMAL_LOGISTIC;
     mpm_init(w, &d, NULL, 0);
     b.velocity[0] = (mpm_real)speed;
     mpm_body_add(w, &b);

@@ -11,8 +11,8 @@ static const char *const ground_name[] = {"rigid wall", "another body, contact o
 static void meet(mpm_desc *d, ground g)
 {
     if (g != POINTS) return;
-    d->normal = MPM_NORMAL_LOGISTIC;
-    d->separation = 1;
+    d->contact.normal = MPM_NORMAL_LOGISTIC;
+    d->contact.touch = 1;
 }
 
 /* A step, with room made for nodes when it is missing. */
@@ -52,7 +52,7 @@ static void incline_begin(mpm_world *w, mpm_material *m, rider what, ground on, 
     d.points = 100000;
     d.side[2] = MPM_SIDE_SYMMETRY;
     d.side[4] = on == WALL ? MPM_SIDE_WALL : MPM_SIDE_FIXED;
-    d.wall_friction = d.friction = (mpm_real)mu;
+    d.wall_friction = d.contact.friction = (mpm_real)mu;
     meet(&d, on);
     if (what != BLOCK) b.shape = mpm_sphere(1, 0, MPM_R(0.5), MPM_R(0.5));
     mpm_init(w, &d, NULL, 0);

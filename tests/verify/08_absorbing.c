@@ -252,9 +252,9 @@ static double area_acting(mpm_material *al, int absorb, double a, double b, int 
     c.absorb_normal = (mpm_real)(a / (double)c.wave_p);
     c.absorb_shear = (mpm_real)(b / (double)c.wave_s);
     if (mpm_init(&w, &d, NULL, 0) != MPM_OK) return NAN;
-    if (mpm_body_add(&w, &c) == MPM_OK && mpm_locate(&w) == MPM_OK) {
+    if (mpm_body_add(&w, &c) == MPM_OK && mpm_locate(&w, 1) == MPM_OK) {
         mpm_p2g(&w);
-        mpm_forces(&w, 1);
+        mpm_forces(&w);
         force = -w.ledger.impulse[axis] / (double)c.density;
     }
     mpm_free(&w);

@@ -101,7 +101,30 @@ spray-study: build/spray_study ## source B's results again: a quarter of an hour
 bench: $(BENCH) ## speed, as ratios measured in one run
 	@for b in $(BENCH); do $$b || exit 1; done
 
+# What a package manager takes: the headers, mpm.c for whoever compiles once, the licence, a pkg-config file.
+# The library has no code of its own to install, so all but the headers goes under share/. DESTDIR goes in front.
+INCLUDE_TO = $(DESTDIR)$(PREFIX)/include
+SHARE_TO   = $(DESTDIR)$(PREFIX)/share
+install: ## headers, mpm.c and mpm.pc under PREFIX=/usr/local; packagers: DESTDIR= (CMake's package: see CMakeLists.txt)
+	mkdir -p $(INCLUDE_TO) $(SHARE_TO)/mpm $(SHARE_TO)/pkgconfig
+	install -m 644 $(HEADERS) $(INCLUDE_TO)
+	install -m 644 mpm.c LICENSE $(SHARE_TO)/mpm
+	sed 's,@PREFIX@,$(abspath $(PREFIX)),; s,@VERSION@,$(VERSION),' packaging/mpm.pc.in >$(SHARE_TO)/pkgconfig/mpm.pc
+	chmod 644 $(SHARE_TO)/pkgconfig/mpm.pc
+
+uninstall: ## removes what install wrote, with the same PREFIX and DESTDIR
+	rm -f $(addprefix $(INCLUDE_TO)/,$(HEADERS)) $(SHARE_TO)/pkgconfig/mpm.pc
+	rm -f $(SHARE_TO)/mpm/mpm.c $(SHARE_TO)/mpm/LICENSE
+	-rmdir $(SHARE_TO)/mpm
+
+build/mpm_all.h: mpm.c $(HEADERS) LICENSE packaging/all.sh
+	@mkdir -p build
+	sh packaging/all.sh $(VERSION) >$@.part && mv $@.part $@
+
+dist: build/mpm_all.h ## a release: build/mpm-VERSION.tar.gz, and build/mpm_all.h with all headers in one file
+	sh packaging/dist.sh $(VERSION)
+
 clean: ## removes build/
 	rm -rf build
 
-.PHONY: all help run test verify bench impacts spray-study reproduction clean
+.PHONY: all help run test verify impacts reproduction spray-study bench install uninstall dist clean

@@ -10,5 +10,6 @@
 #include "mpm.h"
 #include "mpm_bond.h"
 #include "mpm_io.h"
+#include "mpm_measure.h"
 #include "mpm_ptw.h"
 #include "mpm_spray.h"

@@ -101,6 +101,9 @@ spray-study: build/spray_study ## source B's results again: a quarter of an hour
 bench: $(BENCH) ## speed, as ratios measured in one run
 	@for b in $(BENCH); do $$b || exit 1; done
 
+footprint: ## what each header costs - code, stack, memory, compile time: the table in README.md (5 minutes)
+	sh bench/footprint.sh "$(CC)"
+
 # What a package manager takes: the headers, mpm.c for whoever compiles once, the licence, a pkg-config file.
 # The library has no code of its own to install, so all but the headers goes under share/. DESTDIR goes in front.
 INCLUDE_TO = $(DESTDIR)$(PREFIX)/include
@@ -127,4 +130,4 @@ dist: build/mpm_all.h ## a release: build/mpm-VERSION.tar.gz, and build/mpm_all.
 clean: ## removes build/
 	rm -rf build
 
-.PHONY: all help run test verify impacts reproduction spray-study bench install uninstall dist clean
+.PHONY: all help run test verify impacts reproduction spray-study bench footprint install uninstall dist clean

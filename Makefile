@@ -1,13 +1,7 @@
-# mpm.h - the library is its headers; this builds the examples, the tests and the figures.
-#   make            everything into build/
-#   make run        the main job: an aluminium particle hits an aluminium plate at 810 m/s
-#   make test       every test, double and float, and the compile tests
-#   make bench      speed, as ratios measured in one run
-#   make impacts    the impacts of docs/reproduction.md: bonded, unbonded, whole model, rim jet (6 minutes)
-#   make spray-study source B's results again: a quarter of an hour, resumable; BUDGET=quick: less
-#   make reproduction source A's results again: an hour; BUDGET=desk: nine hours; full: days; resumable
-#   make verify     the verification ladder again: writes docs/verification.md; resumable, `make -j2 verify`
-#   make clean
+# mpm.h - the library is its headers; this builds the examples, the tests and the figures, installs and packs.
+# `make help` lists the targets: it prints the words behind "##" in this file.
+
+VERSION := $(shell sed -n 's/^.define MPM_VERSION "\(.*\)"/\1/p' mpm.h)
 
 # Contraction off: the same source gives the same bits with and without fused multiply-add.
 NATIVE := $(shell echo 'int x;' | $(CC) -march=native -xc -c -o /dev/null - 2>/dev/null && echo -march=native)
@@ -16,60 +10,71 @@ CFLAGS ?= -O3 $(NATIVE) -ffp-contract=off -fno-math-errno -fno-trapping-math
 TESTFLAGS ?= -O2 -ffp-contract=off
 STRICT  = -std=c99 -pedantic -Wall -Wextra -Wconversion -Wshadow
 INCLUDE = -I. -Iexamples -Iexamples/studies -Itests
-HEADERS = $(wildcard mpm*.h examples/*.h examples/studies/*.h tests/*.h tests/verify/*.h bench/*.h)
+# The compiler notes beside each program which headers it includes: it is built again when one of these changes.
+NOTE    = -MMD -MP -MF $@.d -MT $@
+JOBS   ?= 2
+PREFIX ?= /usr/local
+MAKEFLAGS += -r
 
-EXAMPLES = $(patsubst examples/%.c,build/%,$(wildcard examples/*.c)) $(patsubst examples/studies/%.c,build/%,$(wildcard examples/studies/*.c))
+HEADERS  = $(wildcard mpm*.h)
+EXAMPLES = $(patsubst examples/%.c,build/%,$(wildcard examples/*.c))
+STUDIES  = $(patsubst examples/studies/%.c,build/%,$(wildcard examples/studies/*.c))
 TESTS    = $(patsubst tests/%.c,build/tests/%,$(wildcard tests/[0-9]*.c))
 FLOATS   = $(patsubst tests/%.c,build/tests/%_f32,$(wildcard tests/[0-9]*.c))
-VERIFY   = $(patsubst tests/verify/%.c,build/verify/%.md,$(sort $(wildcard tests/verify/*.c)))
+SCRIPTS  = tests/compile/run.sh $(sort $(wildcard tests/[0-9]*.sh))
+VERIFY   = $(patsubst tests/verify/%.c,build/verify/%,$(sort $(wildcard tests/verify/*.c)))
 BENCH    = $(patsubst bench/%.c,build/bench/%,$(wildcard bench/*.c))
 
-all: $(EXAMPLES) $(TESTS) $(FLOATS) $(BENCH)
+all: $(EXAMPLES) $(STUDIES) $(TESTS) $(FLOATS) $(BENCH) ## everything into build/ (what a plain `make` does)
 
-run: build/impact
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
+
+run: build/impact ## the main job: an aluminium particle hits an aluminium plate at 810 m/s
 	build/impact --out build/impact-out
 
-test: $(EXAMPLES) $(TESTS) $(FLOATS)
-	@sh tests/run.sh $(TESTS) $(FLOATS) -- "$(CC)"
+test: $(EXAMPLES) $(STUDIES) $(TESTS) $(FLOATS) ## every test, double and float, the compile tests, the packages; JOBS=2 at a time
+	@sh tests/run.sh $(JOBS) "$(CC)" $(SCRIPTS) $(TESTS)
 
-bench: $(BENCH)
-	@for b in $(BENCH); do $$b || exit 1; done
-
-build/%: examples/%.c $(HEADERS)
+$(EXAMPLES): build/%: examples/%.c
 	@mkdir -p build
-	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $< -o $@ $(LDFLAGS) -lm
+	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $(NOTE) $< -o $@ $(LDFLAGS) -lm
 
-build/%: examples/studies/%.c $(HEADERS)
+$(STUDIES): build/%: examples/studies/%.c
 	@mkdir -p build
-	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $< -o $@ $(LDFLAGS) -lm
+	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $(NOTE) $< -o $@ $(LDFLAGS) -lm
 
-build/tests/%_f32: tests/%.c $(HEADERS)
+$(FLOATS): build/tests/%_f32: tests/%.c
 	@mkdir -p build/tests
-	$(CC) $(STRICT) $(TESTFLAGS) -DMPM_FLOAT $(INCLUDE) $< -o $@ $(LDFLAGS) -lm
+	$(CC) $(STRICT) $(TESTFLAGS) -DMPM_FLOAT $(INCLUDE) $(NOTE) $< -o $@ $(LDFLAGS) -lm
 
-build/tests/%: tests/%.c $(HEADERS)
+$(TESTS): build/tests/%: tests/%.c
 	@mkdir -p build/tests
-	$(CC) $(STRICT) $(TESTFLAGS) $(INCLUDE) $< -o $@ $(LDFLAGS) -lm
+	$(CC) $(STRICT) $(TESTFLAGS) $(INCLUDE) $(NOTE) $< -o $@ $(LDFLAGS) -lm
 
-build/bench/%: bench/%.c $(HEADERS)
+$(BENCH): build/bench/%: bench/%.c
 	@mkdir -p build/bench
-	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $< -o $@ $(LDFLAGS) -lm
+	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $(NOTE) $< -o $@ $(LDFLAGS) -lm
 
-build/verify/%: tests/verify/%.c $(HEADERS)
+$(VERIFY): build/verify/%: tests/verify/%.c
 	@mkdir -p build/verify
-	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) -Itests/verify $< -o $@ $(LDFLAGS) -lm
+	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) -Itests/verify $(NOTE) $< -o $@ $(LDFLAGS) -lm
+
+-include $(wildcard build/*.d build/*/*.d)
+# The notes may name a source that has moved since: no reason to stop.
+%.c: ;
 
 # One section of docs/verification.md; finished sections are kept.
 build/verify/%.md: build/verify/%
 	$< >$@.part && mv $@.part $@
 
-verify: $(VERIFY)
-	sh tests/verify/page.sh $(VERIFY) >docs/verification.md
+verify: $(VERIFY:=.md) ## the verification ladder again: writes docs/verification.md; resumable, `make -j2 verify`
+	sh tests/verify/page.sh $(VERIFY:=.md) >docs/verification.md
 	@grep -h '^[0-9]* rows' docs/verification.md
 
 # The runs behind docs/reproduction.md and the README, and the numbers quoted there.
 RIM = --geometry axisymmetric --cell 0.7 --spacing 0.175 --dt-factor 0.2 --frames 1 --quiet
-impacts: build/impact
+impacts: build/impact ## the impacts of docs/reproduction.md: bonded, unbonded, whole model, rim jet (6 minutes)
 	build/impact --frames 0 --quiet --out build/bonded
 	build/impact --frames 0 --quiet --out build/unbonded --bond none
 	build/impact --frames 0 --quiet --out build/whole --symmetry full
@@ -85,18 +90,44 @@ impacts: build/impact
 # Writes its part of docs/reproduction.md, and docs/data; finished runs are kept in build/reproduction-out.
 # The page in this repository is that of BUDGET=desk. DESK=crit,held runs these parts at the desk budget.
 reproduction: BUDGET = quick
-reproduction: build/reproduction
+reproduction: build/reproduction ## source A's results again: an hour; BUDGET=desk: nine hours; full: days; resumable
 	build/reproduction --budget $(BUDGET) --desk "$(DESK)"
 
 # Writes docs/spray.md and docs/data; finished runs are kept in build/spray_study.log.
 BUDGET ?= full
-spray-study: build/spray_study
+spray-study: build/spray_study ## source B's results again: a quarter of an hour, resumable; BUDGET=quick: less
 	build/spray_study --budget $(BUDGET)
 
-clean:
+bench: $(BENCH) ## speed, as ratios measured in one run
+	@for b in $(BENCH); do $$b || exit 1; done
+
+footprint: ## what each header costs - code, stack, memory, compile time: the table in README.md (5 minutes)
+	sh bench/footprint.sh "$(CC)"
+
+# What a package manager takes: the headers, mpm.c for whoever compiles once, the licence, a pkg-config file.
+# The library has no code of its own to install, so all but the headers goes under share/. DESTDIR goes in front.
+INCLUDE_TO = $(DESTDIR)$(PREFIX)/include
+SHARE_TO   = $(DESTDIR)$(PREFIX)/share
+install: ## headers, mpm.c and mpm.pc under PREFIX=/usr/local; packagers: DESTDIR= (CMake's package: see CMakeLists.txt)
+	mkdir -p $(INCLUDE_TO) $(SHARE_TO)/mpm $(SHARE_TO)/pkgconfig
+	install -m 644 $(HEADERS) $(INCLUDE_TO)
+	install -m 644 mpm.c LICENSE $(SHARE_TO)/mpm
+	sed 's,@PREFIX@,$(abspath $(PREFIX)),; s,@VERSION@,$(VERSION),' packaging/mpm.pc.in >$(SHARE_TO)/pkgconfig/mpm.pc
+	chmod 644 $(SHARE_TO)/pkgconfig/mpm.pc
+
+uninstall: ## removes what install wrote, with the same PREFIX and DESTDIR
+	rm -f $(addprefix $(INCLUDE_TO)/,$(HEADERS)) $(SHARE_TO)/pkgconfig/mpm.pc
+	rm -f $(SHARE_TO)/mpm/mpm.c $(SHARE_TO)/mpm/LICENSE
+	-rmdir $(SHARE_TO)/mpm
+
+build/mpm_all.h: mpm.c $(HEADERS) LICENSE packaging/all.sh
+	@mkdir -p build
+	sh packaging/all.sh $(VERSION) >$@.part && mv $@.part $@
+
+dist: build/mpm_all.h ## a release: build/mpm-VERSION.tar.gz, and build/mpm_all.h with all headers in one file
+	sh packaging/dist.sh $(VERSION)
+
+clean: ## removes build/
 	rm -rf build
 
-# sections are programs first: keep them
-.PRECIOUS: build/verify/%
-
-.PHONY: all run test verify bench impacts spray-study reproduction clean
+.PHONY: all help run test verify impacts reproduction spray-study bench footprint install uninstall dist clean

@@ -1,32 +1,58 @@
 #!/bin/sh
-# Runs the test programs given before "--", then the compile tests with the compiler given behind it,
-# and closes with one count over all of them.
+# sh tests/run.sh JOBS CC TEST...: runs the tests, JOBS at a time, and closes with one count over all of them.
+# A test is a program, or a script that is given the compiler's name. A program's twin NAME_f32 runs behind it,
+# not beside it: both write the same files. Every test has a log of its own; they are shown in the order given.
 set -u
+name_of() { echo "$1" | sed 's,^build/,,; s,^tests/,,; s,/run\.sh$,,; s,\.sh$,,'; }
+run() { # compiler, test: the log gets its name when it is whole
+    log=build/tests/$(name_of "$2").log
+    case $2 in
+    *.sh) sh "$2" "$1" ;;
+    *) "$2" ;;
+    esac >"$log.part" 2>&1
+    mv "$log.part" "$log"
+}
+if [ "$1" = --one ]; then # this script again, as one of the jobs
+    run "$2" "$3"
+    [ -x "$3_f32" ] && run "$2" "$3_f32"
+    exit 0
+fi
+jobs=$1
+cc=$2
+shift 2
 passed=0
 failed=0
-count() { # adds up the closing lines "N passed, N failed" of a log
+count() { # adds up the closing line "N passed, N failed" of a log
     p=$(sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed$/\1/p' "$1" | tail -n 1)
     f=$(sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed$/\2/p' "$1" | tail -n 1)
-    if [ -z "$p" ]; then # the program died before its closing line
+    if [ -z "$p" ]; then # the test died before its closing line
         p=0
         f=1
     fi
     passed=$((passed + p))
     failed=$((failed + f))
 }
-mkdir -p build/tests
-while [ $# -gt 0 ] && [ "$1" != "--" ]; do
-    log=$1.log
-    "$1" >"$log" 2>&1
+show() { # test: its closing line and what a person must see, as soon as it is done
+    log=build/tests/$(name_of "$1").log
+    until [ -f "$log" ] || [ -f build/tests/done ]; do sleep 1; done
+    [ -f "$log" ] || echo "it did not run" >"$log"
     count "$log"
-    printf '%-32s %s\n' "$(basename "$1")" "$(tail -n 1 "$log")"
-    grep '^not ok' "$log"
-    shift
-done
-[ $# -gt 0 ] && shift
-sh tests/compile/run.sh "${1:-cc}" >build/tests/compile.log 2>&1
-count build/tests/compile.log
-printf '%-32s %s\n' compile "$(tail -n 1 build/tests/compile.log)"
-grep -E '^(not ok|skip)' build/tests/compile.log
-echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ]
+    printf '%-32s %s\n' "$(name_of "$1")" "$(tail -n 1 "$log")"
+    grep -E '^(not ok|skip)' "$log"
+}
+show_all() {
+    for t in "$@"; do
+        show "$t"
+        [ -x "${t}_f32" ] && show "${t}_f32"
+    done
+    echo "$passed passed, $failed failed"
+    [ "$failed" -eq 0 ]
+}
+mkdir -p build/tests
+rm -f build/tests/*.log build/tests/done
+trap ': >build/tests/done' EXIT
+trap 'exit 130' INT TERM
+show_all "$@" &
+printf '%s\n' "$@" | xargs -P "$jobs" -n 1 sh "$0" --one "$cc"
+: >build/tests/done
+wait $!

@@ -5,20 +5,8 @@ set -u
 dir=build/tests/compile
 rm -rf "$dir"
 mkdir -p "$dir"
-passed=0
-failed=0
+. tests/check.sh
 strict="-pedantic -Wall -Wextra -Wconversion -Wshadow -Werror -I."
-check() { # name, command...
-    name=$1
-    shift
-    if "$@" >"$dir/out" 2>&1; then
-        passed=$((passed + 1))
-        echo "ok - $name"
-    else
-        failed=$((failed + 1))
-        echo "not ok - $name: $(head -n 3 "$dir/out" | tr '\n' ' ')"
-    fi
-}
 # One symbol of each header that its implementation must provide.
 symbol() {
     case $1 in
@@ -86,5 +74,4 @@ for cc in gcc clang; do
         check "an impact by $cc $level agrees with the first" agree "$dir/agree_first" "$dir/agree_$cc$level"
     done
 done
-echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ]
+check_end

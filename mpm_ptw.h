@@ -1,12 +1,11 @@
 /* mpm_ptw.h - the material: strength, melting, equation of state and stress update of metals at
-   impact rates. Version 0.1.0. SPDX-License-Identifier: MIT
+   impact rates. Version 0.2.0. SPDX-License-Identifier: MIT
 
    DO THIS
      In ONE source file:                          everywhere else:
        #define MPM_IMPLEMENTATION                   #include "mpm_ptw.h"
        #include "mpm_ptw.h"
-     (MPM_PTW_IMPLEMENTATION gives this header's functions alone.) Fill a material, check it, and
-     hand mpm_material_stress with a pointer to it to a body. Link with -lm.
+     Fill a material, check it, and hand mpm_material_stress with a pointer to it to a body. Link with -lm.
 
    WHAT IT DOES NOT DO
      No heat conduction, no thermal expansion beyond the Grueneisen term, no temperature rise from
@@ -51,6 +50,10 @@
 #define MPM_PTW_H
 
 #include "mpm.h"
+
+#if MPM_VERSION_NUMBER != 200
+#error "mpm_ptw.h 0.2.0 needs mpm.h 0.2.0"
+#endif
 
 #ifdef MPM_FLOAT
 #define mpm_material_default mpm_material_default_f32
@@ -321,16 +324,12 @@ MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *bl
 }
 #endif
 
-/* Stop here if you only want the interface. */
-#endif /* MPM_PTW_H */
+#endif /* MPM_PTW_H - stop here if you only want the API */
 
 /* ============================================================================================ */
+#if defined(MPM_IMPLEMENTATION) && !defined(MPM__PTW_IMPLEMENTED)
+#define MPM__PTW_IMPLEMENTED
 
-#if defined(MPM_IMPLEMENTATION) || defined(MPM_PTW_IMPLEMENTATION)
-#ifndef MPM_PTW_IMPLEMENTED
-#define MPM_PTW_IMPLEMENTED
-
-#include <math.h>
 #include <string.h>
 
 #ifdef __cplusplus
@@ -339,64 +338,20 @@ extern "C" {
 
 /* ---- small tools --------------------------------------------------------------------------- */
 
-#ifdef MPM_FLOAT
-static inline mpm_real mpm__ptw_exp(mpm_real x) { return expf(x); }
-static inline mpm_real mpm__ptw_expm1(mpm_real x) { return expm1f(x); }
-static inline mpm_real mpm__ptw_log(mpm_real x) { return logf(x); }
-static inline mpm_real mpm__ptw_pow(mpm_real x, mpm_real y) { return powf(x, y); }
-static inline mpm_real mpm__ptw_erf(mpm_real x) { return erff(x); }
-static inline mpm_real mpm__ptw_sqrt(mpm_real x) { return sqrtf(x); }
-static inline mpm_real mpm__ptw_cbrt(mpm_real x) { return cbrtf(x); }
-static inline mpm_real mpm__ptw_abs(mpm_real x) { return fabsf(x); }
-#else
-static inline mpm_real mpm__ptw_exp(mpm_real x) { return exp(x); }
-static inline mpm_real mpm__ptw_expm1(mpm_real x) { return expm1(x); }
-static inline mpm_real mpm__ptw_log(mpm_real x) { return log(x); }
-static inline mpm_real mpm__ptw_pow(mpm_real x, mpm_real y) { return pow(x, y); }
-static inline mpm_real mpm__ptw_erf(mpm_real x) { return erf(x); }
-static inline mpm_real mpm__ptw_sqrt(mpm_real x) { return sqrt(x); }
-static inline mpm_real mpm__ptw_cbrt(mpm_real x) { return cbrt(x); }
-static inline mpm_real mpm__ptw_abs(mpm_real x) { return fabs(x); }
-#endif
-
 static inline mpm_real mpm__ptw_min(mpm_real a, mpm_real b) { return a < b ? a : b; }
 static inline mpm_real mpm__ptw_max(mpm_real a, mpm_real b) { return a > b ? a : b; }
 static inline mpm_real mpm__ptw_infinity(void) { return (mpm_real)HUGE_VAL; }
-/* x - x is 0 for finite numbers only. */
-static inline int mpm__ptw_finite(mpm_real x) { return x - x == MPM_R(0.0); }
-
-/* Notes a fault, if the caller wants one, and hands its status on. */
-static inline mpm_status mpm__ptw_fail(mpm_fault *fault, mpm_status status, const char *field,
-                                       mpm_real value, long index)
-{
-    if (fault) {
-        fault->status = status;
-        fault->field = field;
-        fault->value = value;
-        fault->index = index;
-    }
-    return status;
-}
-
-/* The fault of a parameter that is out of range, or no number. */
-static inline mpm_status mpm__ptw_refuse(const char *field, mpm_real value, mpm_fault *fault)
-{
-    return mpm__ptw_fail(fault, mpm__ptw_finite(value) ? MPM_ERR_ARGUMENT : MPM_ERR_NAN, field,
-                         value, -1);
-}
 
 /* low <= value <= high (inclusive; finite), or a fault that names the field. */
-static inline mpm_status mpm__ptw_within(const char *field, mpm_real value, mpm_real low,
-                                         mpm_real high, mpm_fault *fault)
+static inline mpm_status mpm__ptw_within(const char *field, mpm_real value, mpm_real low, mpm_real high,
+                                         mpm_fault *fault)
 {
-    if (value >= low && value <= high && mpm__ptw_finite(value)) return MPM_OK;
-    return mpm__ptw_refuse(field, value, fault);
+    return mpm_want(value >= low && value <= high, fault, field, value, -1);
 }
 
 static inline mpm_status mpm__ptw_positive(const char *field, mpm_real value, mpm_fault *fault)
 {
-    if (value > 0 && mpm__ptw_finite(value)) return MPM_OK;
-    return mpm__ptw_refuse(field, value, fault);
+    return mpm_want(value > 0, fault, field, value, -1);
 }
 
 /* Returns from the calling check at its first fault. */
@@ -433,21 +388,21 @@ static inline mpm_real mpm__ptw_melt(const mpm_material *m, mpm_real melt_expone
     if (m->melt == MPM_MELT_NONE) return mpm__ptw_infinity();
     if (m->melt == MPM_MELT_CONSTANT) return m->melt_temperature;
     return m->melt_temperature *
-           mpm__ptw_exp(2 * m->melt_a * (1 - 1 / eta) + melt_exponent * log_eta);
+           mpm_exp(2 * m->melt_a * (1 - 1 / eta) + melt_exponent * log_eta);
 }
 
 /* mu0 - D/(exp(T0/T) - 1) (A 2.6); at T = 0 it is mu0 exactly. */
 static inline mpm_real mpm__ptw_shear_mts(const mpm_material *m, mpm_real temperature)
 {
     if (!(temperature > 0)) return m->shear_modulus;
-    return m->shear_modulus - m->shear_d / mpm__ptw_expm1(m->shear_t / temperature);
+    return m->shear_modulus - m->shear_d / mpm_expm1(m->shear_t / temperature);
 }
 
 /* mu0 (1 + A p/eta^(1/3) - B (T - 300 K)), Steinberg's form. */
 static inline mpm_real mpm__ptw_shear_scg(const mpm_material *m, mpm_real temperature, mpm_real pressure,
                                           mpm_real eta)
 {
-    mpm_real cold = 1 + m->shear_a * pressure / mpm__ptw_cbrt(eta);
+    mpm_real cold = 1 + m->shear_a * pressure / mpm_cbrt(eta);
     return m->shear_modulus * (cold - m->shear_b * (temperature - 300));
 }
 
@@ -478,7 +433,7 @@ static inline void mpm__ptw_cold(const mpm_material *m, mpm__ptw_shared *h)
         h->eta_low = MPM_R(0.875);
         if (half < 0) h->eta_high = -m->melt_a / half;
     }
-    h->cold = mpm__ptw_melt(m, h->melt_exponent, mpm__ptw_log(h->eta_low > 0 ? h->eta_low : 1),
+    h->cold = mpm__ptw_melt(m, h->melt_exponent, mpm_log(h->eta_low > 0 ? h->eta_low : 1),
                             h->eta_low);
     h->cold *= 1 - 64 * MPM_EPSILON;
 }
@@ -486,16 +441,15 @@ static inline void mpm__ptw_cold(const mpm_material *m, mpm__ptw_shared *h)
 static inline mpm__ptw_shared mpm__ptw_share(const mpm_material *m)
 {
     const mpm_ptw *c = &m->ptw;
-    const mpm_real pi = MPM_R(3.14159265358979323846);
     mpm__ptw_shared h;
     mpm__ptw_cold(m, &h);
     h.rate_factor = 0;
     h.cross = mpm__ptw_infinity();
     if (m->strength == MPM_STRENGTH_PTW) {
-        mpm_real atoms = mpm__ptw_cbrt(4 * pi * m->density / (3 * c->atomic_mass));
-        h.rate_factor = c->gamma * atoms / (2 * mpm__ptw_sqrt(m->density));
+        mpm_real atoms = mpm_cbrt(4 * MPM_PI * m->density / (3 * c->atomic_mass));
+        h.rate_factor = c->gamma * atoms / (2 * mpm_sqrt(m->density));
         if (c->y2 > c->s1)
-            h.cross = mpm__ptw_log(c->s0 / c->y1) / (c->y2 - c->s1) + MPM_R(0.01);
+            h.cross = mpm_log(c->s0 / c->y1) / (c->y2 - c->s1) + MPM_R(0.01);
     }
     return h;
 }
@@ -511,11 +465,11 @@ static inline mpm__ptw_point mpm__ptw_prepare(const mpm_material *m, const mpm__
     p.eta = eta;
     p.log_eta = 0;
     p.rate_scale = 0;
-    if (m->melt == MPM_MELT_SCG || m->strength == MPM_STRENGTH_PTW) p.log_eta = mpm__ptw_log(eta);
+    if (m->melt == MPM_MELT_SCG || m->strength == MPM_STRENGTH_PTW) p.log_eta = mpm_log(eta);
     p.melt = mpm__ptw_melt(m, h->melt_exponent, p.log_eta, eta);
     p.hat = s->temperature / p.melt;
     if (m->strength == MPM_STRENGTH_PTW)
-        p.rate_scale = 1 / (h->rate_factor * mpm__ptw_sqrt(shear));
+        p.rate_scale = 1 / (h->rate_factor * mpm_sqrt(shear));
     return p;
 }
 
@@ -531,8 +485,8 @@ static inline void mpm__ptw_thermal(const mpm_ptw *c, mpm_real x, mpm_real slope
 {
     const mpm_real two_over_root_pi = MPM_R(1.12837916709551257390);
     /* erf is 1 to the last bit of a double from 5.93 on, and of a float well before. */
-    mpm_real erf_x = x >= 6 ? 1 : mpm__ptw_erf(x);
-    mpm_real bell = x >= 6 ? 0 : -slope * two_over_root_pi * mpm__ptw_exp(-x * x);
+    mpm_real erf_x = x >= 6 ? 1 : mpm_erf(x);
+    mpm_real bell = x >= 6 ? 0 : -slope * two_over_root_pi * mpm_exp(-x * x);
     v->s = c->s0 - (c->s0 - c->sinf) * erf_x;
     v->y = c->y0 - (c->y0 - c->yinf) * erf_x;
     v->s_slope = (c->s0 - c->sinf) * bell;
@@ -556,12 +510,12 @@ static inline mpm__ptw_levels mpm__ptw_saturation(const mpm_material *m, const m
                                                   mpm_real T_hat, mpm_real L)
 {
     const mpm_ptw *c = &m->ptw;
-    mpm_real shock = c->s0 * mpm__ptw_exp(c->s1 * L);
+    mpm_real shock = c->s0 * mpm_exp(c->s1 * L);
     mpm_real low = shock, low_slope = c->s1 * shock;
     mpm_real x = -c->kappa * T_hat * L, x_slope = -c->kappa * T_hat;
     mpm__ptw_levels v;
     if (L < h->cross) {
-        mpm_real power = c->y1 * mpm__ptw_exp(c->y2 * L);
+        mpm_real power = c->y1 * mpm_exp(c->y2 * L);
         if (power < shock) {
             low = power;
             low_slope = c->y2 * power;
@@ -597,7 +551,7 @@ static inline mpm__ptw_levels mpm__ptw_static_levels(const mpm_ptw *c, mpm_real 
 static inline mpm_flow mpm__ptw_voce(const mpm_ptw *c, const mpm__ptw_levels *v, mpm_real strain)
 {
     mpm_real gap = v->s - v->y, gap_slope = v->s_slope - v->y_slope;
-    mpm_real u = c->theta * strain / gap, e = mpm__ptw_exp(-u);
+    mpm_real u = c->theta * strain / gap, e = mpm_exp(-u);
     mpm_flow f;
     f.stress = v->s - gap * e;
     f.strain_slope = c->theta * e;
@@ -609,11 +563,11 @@ static inline mpm_flow mpm__ptw_voce(const mpm_ptw *c, const mpm__ptw_levels *v,
 static inline mpm_flow mpm__ptw_harden_negative(const mpm_ptw *c, const mpm__ptw_levels *v,
                                                 mpm_real strain, mpm_real alpha)
 {
-    mpm_real beta = (v->s - v->y) / alpha, psi = mpm__ptw_expm1(beta);
+    mpm_real beta = (v->s - v->y) / alpha, psi = mpm_expm1(beta);
     mpm_real t = -beta - c->theta * strain / (alpha * psi);
-    mpm_real e = mpm__ptw_exp(-mpm__ptw_abs(t));
+    mpm_real e = mpm_exp(-mpm_fabs(t));
     mpm_flow f;
-    f.stress = v->s + alpha * (t > 0 ? t + mpm__ptw_log(e - psi) : mpm__ptw_log(1 - psi * e));
+    f.stress = v->s + alpha * (t > 0 ? t + mpm_log(e - psi) : mpm_log(1 - psi * e));
     f.strain_slope = t > 0 ? c->theta / (e - psi) : c->theta * e / (1 - psi * e);
     f.rate_slope = v->s_slope;
     return f;
@@ -626,9 +580,9 @@ static inline mpm_flow mpm__ptw_harden_positive(const mpm_ptw *c, const mpm__ptw
                                                 mpm_real strain, mpm_real alpha)
 {
     mpm_real beta = (v->s - v->y) / alpha;
-    mpm_real psi = mpm__ptw_expm1(beta), z = c->theta * strain / (alpha * psi);
-    mpm_real gone = -mpm__ptw_expm1(-z), left = 1 - gone;
-    mpm_real W = 1 + psi * gone, log_W = mpm__ptw_log(W);
+    mpm_real psi = mpm_expm1(beta), z = c->theta * strain / (alpha * psi);
+    mpm_real gone = -mpm_expm1(-z), left = 1 - gone;
+    mpm_real W = 1 + psi * gone, log_W = mpm_log(W);
     mpm_real alpha_slope = -v->y_slope / c->d;
     mpm_real beta_slope = (v->s_slope - v->y_slope - beta * alpha_slope) / alpha;
     mpm_real psi_slope = (1 + psi) * beta_slope;
@@ -647,7 +601,7 @@ static inline mpm_flow mpm__ptw_harden_steep(const mpm_ptw *c, const mpm__ptw_le
 {
     mpm_flow f;
     mpm_real w = alpha > 0 ? c->theta * strain / alpha : 0;
-    f.stress = v->y + (alpha > 0 ? alpha * mpm__ptw_log(1 + w) : 0);
+    f.stress = v->y + (alpha > 0 ? alpha * mpm_log(1 + w) : 0);
     f.strain_slope = c->theta / (1 + w);
     f.rate_slope = v->y_slope;
     return f;
@@ -677,7 +631,7 @@ static inline mpm_flow mpm__ptw_flow_ptw(const mpm_material *m, const mpm__ptw_s
     mpm__ptw_levels v;
     mpm_flow f;
     if (rate > 0)
-        v = mpm__ptw_saturation(m, h, p->hat, mpm__ptw_log(rate * p->rate_scale) + p->log_eta / 6);
+        v = mpm__ptw_saturation(m, h, p->hat, mpm_log(rate * p->rate_scale) + p->log_eta / 6);
     else
         v = mpm__ptw_static_levels(&m->ptw, p->state.temperature);
     f = mpm__ptw_harden(&m->ptw, &v, strain);
@@ -713,15 +667,15 @@ static inline mpm_flow mpm__ptw_flow_jc(const mpm_material *m, const mpm__ptw_po
     const mpm_jc *c = &m->jc;
     mpm_real strain = p->state.plastic_strain, rate = p->state.plastic_rate;
     mpm_real T_star = (p->state.temperature - c->temperature) / (p->melt - c->temperature);
-    mpm_real soft = T_star > 0 ? 1 - mpm__ptw_pow(T_star, c->m) : 1;
-    mpm_real hard = c->a + (strain > 0 ? c->b * mpm__ptw_pow(strain, c->n) : 0);
-    mpm_real fast = rate > c->rate ? 1 + c->c * mpm__ptw_log(rate / c->rate) : 1;
+    mpm_real soft = T_star > 0 ? 1 - mpm_pow(T_star, c->m) : 1;
+    mpm_real hard = c->a + (strain > 0 ? c->b * mpm_pow(strain, c->n) : 0);
+    mpm_real fast = rate > c->rate ? 1 + c->c * mpm_log(rate / c->rate) : 1;
     mpm_real from = strain > 0 ? strain : c->a / (3 * p->shear);
     mpm_flow f;
     f.stress = hard * fast * soft;
     f.strain_slope = 0;
     if (from > 0 && c->b > 0) {
-        mpm_real grown = from > strain ? c->b * mpm__ptw_pow(from, c->n) : hard - c->a;
+        mpm_real grown = from > strain ? c->b * mpm_pow(from, c->n) : hard - c->a;
         f.strain_slope = c->n * grown / from * fast * soft;
     }
     f.rate_slope = rate > c->rate ? hard * soft * c->c : 0;
@@ -732,7 +686,7 @@ static inline mpm_flow mpm__ptw_flow_scg(const mpm_material *m, const mpm__ptw_p
 {
     const mpm_scg *c = &m->scg;
     mpm_real stretch = 1 + c->beta * p->state.plastic_strain;
-    mpm_real hard = c->y0 * mpm__ptw_pow(stretch, c->n), scale = p->shear / m->shear_modulus;
+    mpm_real hard = c->y0 * mpm_pow(stretch, c->n), scale = p->shear / m->shear_modulus;
     mpm_flow f;
     f.stress = mpm__ptw_min(hard, c->ymax) * scale;
     f.strain_slope = hard < c->ymax ? c->n * c->beta * hard / stretch * scale : 0;
@@ -784,12 +738,12 @@ static inline mpm_status mpm__ptw_eos_range(const mpm_material *m, mpm_real dens
                                             mpm_fault *fault)
 {
     mpm_real mu = density / m->density - 1;
-    if (!mpm__ptw_finite(density))
-        return mpm__ptw_fail(fault, MPM_ERR_NAN, "density of point", density, index);
+    if (!mpm_finite(density))
+        return mpm_fail(fault, MPM_ERR_NAN, "density of point", density, index);
     if (!(density > 0))
-        return mpm__ptw_fail(fault, MPM_ERR_STATE, "density of point", density, index);
+        return mpm_fail(fault, MPM_ERR_STATE, "density of point", density, index);
     if (m->eos == MPM_EOS_MIE_GRUENEISEN && mu > 0 && !(1 - (m->hugoniot_slope - 1) * mu > 0))
-        return mpm__ptw_fail(fault, MPM_ERR_STATE, "density of point past the Hugoniot's range",
+        return mpm_fail(fault, MPM_ERR_STATE, "density of point past the Hugoniot's range",
                              density, index);
     return MPM_OK;
 }
@@ -806,15 +760,14 @@ MPM_API mpm_real mpm_material_melt_temperature(const mpm_material *m, mpm_real d
 {
     mpm_real eta = density / m->density;
     mpm__ptw_shared h = mpm__ptw_share(m);
-    return mpm__ptw_melt(m, h.melt_exponent, mpm__ptw_log(eta), eta);
+    return mpm__ptw_melt(m, h.melt_exponent, mpm_log(eta), eta);
 }
 
 MPM_API mpm_real mpm_material_attempt_rate(const mpm_material *m, const mpm_material_state *s)
 {
-    const mpm_real pi = MPM_R(3.14159265358979323846);
     mpm_real mu = mpm_material_shear_modulus(m, s);
-    return MPM_R(0.5) * mpm__ptw_cbrt(4 * pi * s->density / (3 * m->ptw.atomic_mass)) *
-           mpm__ptw_sqrt(mu / s->density);
+    return MPM_R(0.5) * mpm_cbrt(4 * MPM_PI * s->density / (3 * m->ptw.atomic_mass)) *
+           mpm_sqrt(mu / s->density);
 }
 
 MPM_API mpm_flow mpm_material_flow(const mpm_material *m, const mpm_material_state *s)
@@ -835,7 +788,7 @@ MPM_API mpm_status mpm_material_pressure(const mpm_material *m, mpm_real density
     mpm_real mu = density / m->density - 1;
     mpm_status status = mpm__ptw_eos_range(m, density, -1, fault);
     if (status < 0) return status;
-    if (!mpm__ptw_finite(energy)) return mpm__ptw_fail(fault, MPM_ERR_NAN, "energy", energy, -1);
+    if (!mpm_finite(energy)) return mpm_fail(fault, MPM_ERR_NAN, "energy", energy, -1);
     if (m->eos == MPM_EOS_LINEAR)
         *pressure = mpm__ptw_bulk_modulus(m) * mu;
     else
@@ -857,8 +810,8 @@ MPM_API void mpm_material_wave_speeds(const mpm_material *m, mpm_real density, m
                                       mpm_real *shear)
 {
     mpm_real nu = m->poisson, modulus = m->young / ((1 + nu) * density);
-    if (longitudinal) *longitudinal = mpm__ptw_sqrt(modulus * (1 - nu) / (1 - 2 * nu));
-    if (shear) *shear = mpm__ptw_sqrt(modulus / 2);
+    if (longitudinal) *longitudinal = mpm_sqrt(modulus * (1 - nu) / (1 - 2 * nu));
+    if (shear) *shear = mpm_sqrt(modulus / 2);
 }
 
 /* ---- the update ---------------------------------------------------------------------------- */
@@ -887,36 +840,36 @@ static inline mpm_status mpm__ptw_diagnose(const mpm_material *m, const mpm_bloc
     mpm_real old;
     int j;
     for (j = 0; j < 6; j++) {
-        if (!mpm__ptw_finite(b->strain[j][i]))
-            return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "strain increment of point",
+        if (!mpm_finite(b->strain[j][i]))
+            return mpm_fail(b->fault, MPM_ERR_NAN, "strain increment of point",
                                  b->strain[j][i], i);
-        if (!mpm__ptw_finite(b->stress[j][i]))
-            return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "stress of point", b->stress[j][i], i);
-        if (j < 3 && !mpm__ptw_finite(b->spin[j][i]))
-            return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "rotation of point", b->spin[j][i], i);
+        if (!mpm_finite(b->stress[j][i]))
+            return mpm_fail(b->fault, MPM_ERR_NAN, "stress of point", b->stress[j][i], i);
+        if (j < 3 && !mpm_finite(b->spin[j][i]))
+            return mpm_fail(b->fault, MPM_ERR_NAN, "rotation of point", b->spin[j][i], i);
     }
-    if (!mpm__ptw_finite(b->energy[i]))
-        return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "energy of point", b->energy[i], i);
-    if (!mpm__ptw_finite(b->temperature[i]))
-        return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "temperature of point", b->temperature[i], i);
-    if (!mpm__ptw_finite(b->plastic_strain[i]))
-        return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "plastic strain of point", b->plastic_strain[i], i);
-    if (!mpm__ptw_finite(b->plastic_rate[i]))
-        return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "plastic rate of point", b->plastic_rate[i], i);
-    if (!mpm__ptw_finite(b->plastic_work[i]))
-        return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "plastic work of point", b->plastic_work[i], i);
+    if (!mpm_finite(b->energy[i]))
+        return mpm_fail(b->fault, MPM_ERR_NAN, "energy of point", b->energy[i], i);
+    if (!mpm_finite(b->temperature[i]))
+        return mpm_fail(b->fault, MPM_ERR_NAN, "temperature of point", b->temperature[i], i);
+    if (!mpm_finite(b->plastic_strain[i]))
+        return mpm_fail(b->fault, MPM_ERR_NAN, "plastic strain of point", b->plastic_strain[i], i);
+    if (!mpm_finite(b->plastic_rate[i]))
+        return mpm_fail(b->fault, MPM_ERR_NAN, "plastic rate of point", b->plastic_rate[i], i);
+    if (!mpm_finite(b->plastic_work[i]))
+        return mpm_fail(b->fault, MPM_ERR_NAN, "plastic work of point", b->plastic_work[i], i);
     if (mpm__ptw_eos_range(m, b->density[i], i, b->fault) < 0)
         return mpm__ptw_eos_range(m, b->density[i], i, b->fault);
     if (!(b->temperature[i] >= 0))
-        return mpm__ptw_fail(b->fault, MPM_ERR_STATE, "temperature of point", b->temperature[i], i);
+        return mpm_fail(b->fault, MPM_ERR_STATE, "temperature of point", b->temperature[i], i);
     if (!(b->plastic_strain[i] >= 0))
-        return mpm__ptw_fail(b->fault, MPM_ERR_STATE, "plastic strain of point",
+        return mpm_fail(b->fault, MPM_ERR_STATE, "plastic strain of point",
                              b->plastic_strain[i], i);
     if (!(volume > -1))
-        return mpm__ptw_fail(b->fault, MPM_ERR_STATE, "volume increment of point", volume, i);
+        return mpm_fail(b->fault, MPM_ERR_STATE, "volume increment of point", volume, i);
     old = b->density[i] * (1 + volume);
     if (m->eos == MPM_EOS_MIE_GRUENEISEN && !(old + m->gruneisen / 2 * m->density * volume > 0))
-        return mpm__ptw_fail(b->fault, MPM_ERR_STATE, "volume increment of point", volume, i);
+        return mpm_fail(b->fault, MPM_ERR_STATE, "volume increment of point", volume, i);
     return MPM_OK;
 }
 
@@ -1174,7 +1127,7 @@ static inline void mpm__ptw_search_guess(const mpm_material *m, const mpm__ptw_l
                   a->rotated[2][i] * a->rotated[2][i];
     mpm_real t2 = a->rotated[3][i] * a->rotated[3][i] + a->rotated[4][i] * a->rotated[4][i] +
                   a->rotated[5][i] * a->rotated[5][i];
-    mpm_real old = mpm__ptw_sqrt(MPM_R(1.5) * n2 + 3 * t2);
+    mpm_real old = mpm_sqrt(MPM_R(1.5) * n2 + 3 * t2);
     mpm_real S = m->strength == MPM_STRENGTH_PTW ? m->ptw.s1 * old : 0;
     mpm_real d = q->d * (q->mises - old + S) / (3 * q->point.shear * q->d + S);
     if (d > q->least && d < q->high) q->d = d;
@@ -1200,8 +1153,8 @@ static inline int mpm__ptw_is_last(const mpm__ptw_search *q, const mpm_flow *f, 
 {
     int first = q->step > q->high;
     mpm_real left = (f->rate_slope + f->strain_slope * q->d) * x * x;
-    mpm_real seen = mpm__ptw_abs(slope - q->slope) * (x * q->d) * (x * q->d);
-    return mpm__ptw_abs(x) <= (first ? MPM_R(5e-6) : MPM_R(1e-4)) && left <= close &&
+    mpm_real seen = mpm_fabs(slope - q->slope) * (x * q->d) * (x * q->d);
+    return mpm_fabs(x) <= (first ? MPM_R(5e-6) : MPM_R(1e-4)) && left <= close &&
            (first || seen <= close * q->step);
 }
 
@@ -1233,7 +1186,7 @@ static inline int mpm__ptw_search_on(const mpm_material *m, const mpm__ptw_share
     x = residual * inverse;
     slope = f.strain_slope + f.rate_slope / d;
     x /= mpm__ptw_max(1 - x * f.rate_slope * inverse / 2, MPM_R(0.25));
-    over = mpm__ptw_abs(residual) <= close;
+    over = mpm_fabs(residual) <= close;
     if (m->strength == MPM_STRENGTH_USER) x = over ? 0 : x;
     else over = over || mpm__ptw_is_last(q, &f, slope, x, close);
     over = over || q->high - q->low <= q->least;
@@ -1241,9 +1194,9 @@ static inline int mpm__ptw_search_on(const mpm_material *m, const mpm__ptw_share
     q->d = d + x * d;
     if (over)
         q->d = mpm__ptw_min(mpm__ptw_max(q->d, q->low), q->high);
-    else if (2 * mpm__ptw_abs(x * d) > q->step)
+    else if (2 * mpm_fabs(x * d) > q->step)
         q->d = q->low + (q->high - q->low) / 2;
-    q->step = mpm__ptw_abs(q->d - d);
+    q->step = mpm_fabs(q->d - d);
     /* So small an increment that its residual proves nothing: is there any flow? */
     if (over && !q->yields && !(stiff * d > close)) {
         q->d = 0;
@@ -1261,7 +1214,7 @@ static inline mpm_real mpm__ptw_effective(const mpm__ptw_lanes *a, int i)
         n2 += a->strain[j][i] * a->strain[j][i];
         t2 += a->strain[j + 3][i] * a->strain[j + 3][i];
     }
-    return mpm__ptw_sqrt((n2 + 2 * t2) * 2 / 3);
+    return mpm_sqrt((n2 + 2 * t2) * 2 / 3);
 }
 
 /* The staged return A6 - A8: one explicit estimate of d from the flow stress of level k, then the
@@ -1357,7 +1310,7 @@ static inline mpm_status mpm__ptw_yield(const mpm_material *m, const mpm__ptw_sh
         s.density = b->density[k];
         s.pressure = -a->mean[list[i]];
         search[i].point = mpm__ptw_prepare(m, h, &s, a->shear[list[i]]);
-        mpm__ptw_search_begin(&search[i], mpm__ptw_sqrt(a->mises2[list[i]]), b->dt, list[i]);
+        mpm__ptw_search_begin(&search[i], mpm_sqrt(a->mises2[list[i]]), b->dt, list[i]);
         if (search[i].d > search[i].least) mpm__ptw_search_guess(m, a, &search[i]);
     }
     if (m->mapping == MPM_RETURN_STAGED)
@@ -1371,8 +1324,8 @@ static inline mpm_status mpm__ptw_yield(const mpm_material *m, const mpm__ptw_sh
         if (m->mapping == MPM_RETURN_CONSISTENT)
             flow[i] = q->point.state.temperature < q->point.melt
                           ? mpm__ptw_max(q->mises - 3 * q->point.shear * q->d, 0) : 0;
-        if (!mpm__ptw_finite(q->d) || !mpm__ptw_finite(flow[i]))
-            return mpm__ptw_fail(b->fault, MPM_ERR_NAN, "flow stress of point", q->d,
+        if (!mpm_finite(q->d) || !mpm_finite(flow[i]))
+            return mpm_fail(b->fault, MPM_ERR_NAN, "flow stress of point", q->d,
                                  a->first + q->lane);
         mpm__ptw_take(m, b, a, q, flow[i], per_step);
     }
@@ -1405,7 +1358,7 @@ static inline void mpm__ptw_heat_volume(const mpm_material *m, const mpm_block *
     int i, k = a->first;
     for (i = 0; i < a->count; i++) {
         mpm_real dv = m->density / b->density[k + i] * a->volume[i] / (1 + a->volume[i]);
-        b->temperature[k + i] += b->temperature[k + i] * mpm__ptw_expm1(-B * dv);
+        b->temperature[k + i] += b->temperature[k + i] * mpm_expm1(-B * dv);
         b->temperature[k + i] -= q[i] * dv / (m->density * m->specific_heat);
     }
 }
@@ -1419,7 +1372,7 @@ static inline void mpm__ptw_close(const mpm_material *m, const mpm_block *b, con
     mpm_real stiff = linear ? bulk : m->density * m->sound_speed * m->sound_speed;
     mpm_real slope = m->hugoniot_slope - 1;
     mpm_real rho0 = m->density, inverse_rho0 = 1 / rho0, cell_per_step = b->cell / b->dt;
-    mpm_real first = m->viscosity_linear * mpm__ptw_sqrt(stiff / rho0), second = m->viscosity_quadratic;
+    mpm_real first = m->viscosity_linear * mpm_sqrt(stiff / rho0), second = m->viscosity_quadratic;
     mpm_real work[MPM__PTW_LANES], mean[MPM__PTW_LANES], viscous[MPM__PTW_LANES], *energy = b->energy + k;
     const mpm_real *density = b->density + k;
     for (i = 0; i < a->count; i++)
@@ -1460,8 +1413,8 @@ MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *bl
     mpm__ptw_bounds bounds;
     mpm__ptw_lanes a;
     if (b->count < 0)
-        return mpm__ptw_fail(b->fault, MPM_ERR_ARGUMENT, "count", (mpm_real)b->count, -1);
-    if (!(b->dt > 0)) return mpm__ptw_fail(b->fault, MPM_ERR_ARGUMENT, "dt", b->dt, -1);
+        return mpm_fail(b->fault, MPM_ERR_ARGUMENT, "count", (mpm_real)b->count, -1);
+    if (!(b->dt > 0)) return mpm_fail(b->fault, MPM_ERR_ARGUMENT, "dt", b->dt, -1);
     h = mpm__ptw_share(m);
     bounds = mpm__ptw_bound(m);
     for (a.first = 0; a.first < b->count; a.first += MPM__PTW_LANES) {
@@ -1735,8 +1688,8 @@ static inline mpm_status mpm__ptw_use(mpm_material *m, const mpm__ptw_metal *t, 
     } else {
         known = 0;
     }
-    if (!known) return mpm__ptw_fail(fault, MPM_ERR_UNKNOWN, "model", 0, -1);
-    if (!found) return mpm__ptw_fail(fault, MPM_ERR_UNKNOWN, "model of material", 0, -1);
+    if (!known) return mpm_fail(fault, MPM_ERR_UNKNOWN, "model", 0, -1);
+    if (!found) return mpm_fail(fault, MPM_ERR_UNKNOWN, "model of material", 0, -1);
     *m = next;
     return MPM_OK;
 }
@@ -1759,7 +1712,7 @@ MPM_API mpm_status mpm_material_preset(mpm_material *m, const char *name, const 
     const mpm__ptw_metal *t = MPM__PTW_FIND(mpm__ptw_metal, mpm__ptw_metals, name);
     mpm_material next = mpm_material_default();
     mpm_status status;
-    if (!t) return mpm__ptw_fail(fault, MPM_ERR_UNKNOWN, "material", 0, -1);
+    if (!t) return mpm_fail(fault, MPM_ERR_UNKNOWN, "material", 0, -1);
     MPM__PTW_REQUIRE(mpm__ptw_positive("units.length", (mpm_real)units->length, fault));
     MPM__PTW_REQUIRE(mpm__ptw_positive("units.mass", (mpm_real)units->mass, fault));
     MPM__PTW_REQUIRE(mpm__ptw_positive("units.time", (mpm_real)units->time, fault));
@@ -1778,7 +1731,7 @@ MPM_API mpm_status mpm_material_preset(mpm_material *m, const char *name, const 
 MPM_API mpm_status mpm_material_model(mpm_material *m, const char *model, mpm_fault *fault)
 {
     const mpm__ptw_metal *t = MPM__PTW_FIND(mpm__ptw_metal, mpm__ptw_metals, m->name);
-    if (!t) return mpm__ptw_fail(fault, MPM_ERR_UNKNOWN, "material", 0, -1);
+    if (!t) return mpm_fail(fault, MPM_ERR_UNKNOWN, "material", 0, -1);
     return mpm__ptw_use(m, t, model, fault);
 }
 
@@ -1823,7 +1776,7 @@ static inline mpm_status mpm__ptw_check_jc(const mpm_material *m, mpm_fault *fau
     MPM__PTW_REQUIRE(mpm__ptw_positive("jc.rate", c->rate, fault));
     MPM__PTW_REQUIRE(mpm__ptw_within("jc.temperature", c->temperature, 0, big, fault));
     if (m->melt != MPM_MELT_NONE && !(m->melt_temperature > c->temperature))
-        return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "melt_temperature", m->melt_temperature, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "melt_temperature", m->melt_temperature, -1);
     return MPM_OK;
 }
 
@@ -1842,11 +1795,11 @@ static inline mpm_status mpm__ptw_check_strength(const mpm_material *m, mpm_faul
     case MPM_STRENGTH_JC: return mpm__ptw_check_jc(m, fault);
     case MPM_STRENGTH_PTW: return mpm__ptw_check_ptw(&m->ptw, fault);
     case MPM_STRENGTH_USER:
-        if (!m->strength_fn) return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "strength_fn", 0, -1);
+        if (!m->strength_fn) return mpm_fail(fault, MPM_ERR_ARGUMENT, "strength_fn", 0, -1);
         return MPM_OK;
     case MPM_STRENGTH_ELASTIC: return MPM_OK;
     }
-    return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "strength", (mpm_real)m->strength, -1);
+    return mpm_fail(fault, MPM_ERR_ARGUMENT, "strength", (mpm_real)m->strength, -1);
 }
 
 static inline mpm_status mpm__ptw_check_shear(const mpm_material *m, mpm_fault *fault)
@@ -1862,7 +1815,7 @@ static inline mpm_status mpm__ptw_check_shear(const mpm_material *m, mpm_fault *
         MPM__PTW_REQUIRE(mpm__ptw_within("shear_a", m->shear_a, 0, big, fault));
         MPM__PTW_REQUIRE(mpm__ptw_within("shear_b", m->shear_b, 0, big, fault));
     } else if (m->shear != MPM_SHEAR_CONSTANT) {
-        return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "shear", (mpm_real)m->shear, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "shear", (mpm_real)m->shear, -1);
     }
     return MPM_OK;
 }
@@ -1871,9 +1824,9 @@ static inline mpm_status mpm__ptw_check_melt_and_eos(const mpm_material *m, mpm_
 {
     const mpm_real big = mpm__ptw_infinity();
     if (m->melt != MPM_MELT_NONE && m->melt != MPM_MELT_CONSTANT && m->melt != MPM_MELT_SCG)
-        return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "melt", (mpm_real)m->melt, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "melt", (mpm_real)m->melt, -1);
     if (m->eos != MPM_EOS_LINEAR && m->eos != MPM_EOS_MIE_GRUENEISEN)
-        return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "eos", (mpm_real)m->eos, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "eos", (mpm_real)m->eos, -1);
     if (m->melt != MPM_MELT_NONE)
         MPM__PTW_REQUIRE(mpm__ptw_positive("melt_temperature", m->melt_temperature, fault));
     if (m->melt == MPM_MELT_SCG) {
@@ -1900,13 +1853,13 @@ MPM_API mpm_status mpm_material_check(const mpm_material *m, mpm_fault *fault)
     MPM__PTW_REQUIRE(mpm__ptw_positive("young", m->young, fault));
     MPM__PTW_REQUIRE(mpm__ptw_within("poisson", m->poisson, -1, MPM_R(0.5), fault));
     if (!(m->poisson > -1 && m->poisson < MPM_R(0.5)))
-        return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "poisson", m->poisson, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "poisson", m->poisson, -1);
     MPM__PTW_REQUIRE(mpm__ptw_within("viscosity_linear", m->viscosity_linear, 0, big, fault));
     MPM__PTW_REQUIRE(mpm__ptw_within("viscosity_quadratic", m->viscosity_quadratic, 0, big, fault));
     if (m->mapping != MPM_RETURN_CONSISTENT && m->mapping != MPM_RETURN_STAGED)
-        return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "mapping", (mpm_real)m->mapping, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "mapping", (mpm_real)m->mapping, -1);
     if (m->rotation != MPM_ROTATION_PROPER && m->rotation != MPM_ROTATION_JAUMANN)
-        return mpm__ptw_fail(fault, MPM_ERR_ARGUMENT, "rotation", (mpm_real)m->rotation, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "rotation", (mpm_real)m->rotation, -1);
     MPM__PTW_REQUIRE(mpm__ptw_check_shear(m, fault));
     MPM__PTW_REQUIRE(mpm__ptw_check_melt_and_eos(m, fault));
     return mpm__ptw_check_strength(m, fault);
@@ -1916,5 +1869,4 @@ MPM_API mpm_status mpm_material_check(const mpm_material *m, mpm_fault *fault)
 }
 #endif
 
-#endif /* MPM_PTW_IMPLEMENTED */
-#endif
+#endif /* MPM__PTW_IMPLEMENTED */

@@ -79,47 +79,52 @@ extern "C" {
 
 /* ---- choices ------------------------------------------------------------------------------- */
 
+/* Each choice is a list of X(enum, "name", "text"), see MPM_NAMES in mpm.h. */
+
 /* The flow stress. */
-typedef enum mpm_strength {
-    MPM_STRENGTH_ELASTIC,  /* never yields */
-    MPM_STRENGTH_LINEAR,   /* Y + H eps */
-    MPM_STRENGTH_JC,       /* Johnson-Cook */
-    MPM_STRENGTH_SCG,      /* Steinberg-Cochran-Guinan, rate independent */
-    MPM_STRENGTH_PTW,      /* Preston-Tonks-Wallace (A 2.4 - 2.8) */
-    MPM_STRENGTH_USER      /* the caller's strength_fn */
-} mpm_strength;
+#define MPM_STRENGTH_LIST(X)                                                               \
+    X(MPM_STRENGTH_ELASTIC, "elastic", "never yields")                                     \
+    X(MPM_STRENGTH_LINEAR, "linear", "linear hardening, Y + H eps")                        \
+    X(MPM_STRENGTH_JC, "jc", "Johnson-Cook")                                               \
+    X(MPM_STRENGTH_SCG, "scg", "Steinberg-Cochran-Guinan, rate independent")               \
+    X(MPM_STRENGTH_PTW, "ptw", "Preston-Tonks-Wallace (A 2.4 - 2.8)")                      \
+    X(MPM_STRENGTH_USER, "user", "the caller's strength_fn")
 
 /* The shear modulus. */
-typedef enum mpm_shear {
-    MPM_SHEAR_CONSTANT,  /* shear_modulus */
-    MPM_SHEAR_MTS,       /* falls with temperature (A 2.6) */
-    MPM_SHEAR_SCG        /* shear_modulus (1 + A p / eta^(1/3) - B (T - 300 K)) */
-} mpm_shear;
+#define MPM_SHEAR_LIST(X)                                                                  \
+    X(MPM_SHEAR_CONSTANT, "constant", "shear_modulus")                                     \
+    X(MPM_SHEAR_MTS, "mts", "falls with temperature (A 2.6)")                              \
+    X(MPM_SHEAR_SCG, "scg", "shear_modulus (1 + A p / eta^(1/3) - B (T - 300 K))")
 
 /* The melting temperature; at and above it the strength is zero. */
-typedef enum mpm_melt {
-    MPM_MELT_NONE,      /* never melts */
-    MPM_MELT_CONSTANT,  /* melt_temperature */
-    MPM_MELT_SCG        /* rises with density (A 2.9) */
-} mpm_melt;
+#define MPM_MELT_LIST(X)                                                                   \
+    X(MPM_MELT_NONE, "none", "never melts")                                                \
+    X(MPM_MELT_CONSTANT, "constant", "melt_temperature")                                   \
+    X(MPM_MELT_SCG, "scg", "rises with density (A 2.9)")
 
 /* The pressure. */
-typedef enum mpm_eos {
-    MPM_EOS_LINEAR,         /* K (eta - 1), K from young and poisson; no thermal pressure */
-    MPM_EOS_MIE_GRUENEISEN  /* shock Hugoniot plus Grueneisen times energy (A 3.42, 3.43) */
-} mpm_eos;
+#define MPM_EOS_LIST(X)                                                                    \
+    X(MPM_EOS_LINEAR, "linear", "K (eta - 1), K from young and poisson; no thermal pressure") \
+    X(MPM_EOS_MIE_GRUENEISEN, "mie-grueneisen", "shock Hugoniot plus Grueneisen times energy (A 3.42, 3.43)")
 
 /* How a trial stress beyond the flow stress comes back to it. */
-typedef enum mpm_return_mapping {
-    MPM_RETURN_CONSISTENT,  /* the increment and the rate it implies satisfy the flow law together */
-    MPM_RETURN_STAGED       /* A6 - A8: one explicit estimate, factor capped at 1, for comparison */
-} mpm_return_mapping;
+#define MPM_RETURN_LIST(X)                                                                 \
+    X(MPM_RETURN_CONSISTENT, "consistent", "increment and the rate it implies satisfy the flow law together") \
+    X(MPM_RETURN_STAGED, "staged", "A6 - A8: one explicit estimate, factor capped at 1, for comparison")
 
 /* How stress follows a rotating material. */
-typedef enum mpm_rotation {
-    MPM_ROTATION_PROPER,  /* Hughes-Winget: an exact rotation, invariants kept to rounding */
-    MPM_ROTATION_JAUMANN  /* A2: first order, stretches the deviator at large rotations */
-} mpm_rotation;
+#define MPM_ROTATION_LIST(X)                                                               \
+    X(MPM_ROTATION_PROPER, "proper", "Hughes-Winget: an exact rotation, invariants kept to rounding") \
+    X(MPM_ROTATION_JAUMANN, "jaumann", "A2: first order, stretches the deviator at large rotations")
+
+#define MPM__PTW_ENUM(name, word, text) name,
+typedef enum mpm_strength { MPM_STRENGTH_LIST(MPM__PTW_ENUM) } mpm_strength;
+typedef enum mpm_shear { MPM_SHEAR_LIST(MPM__PTW_ENUM) } mpm_shear;
+typedef enum mpm_melt { MPM_MELT_LIST(MPM__PTW_ENUM) } mpm_melt;
+typedef enum mpm_eos { MPM_EOS_LIST(MPM__PTW_ENUM) } mpm_eos;
+typedef enum mpm_return_mapping { MPM_RETURN_LIST(MPM__PTW_ENUM) } mpm_return_mapping;
+typedef enum mpm_rotation { MPM_ROTATION_LIST(MPM__PTW_ENUM) } mpm_rotation;
+#undef MPM__PTW_ENUM
 
 /* ---- parameters ---------------------------------------------------------------------------- */
 
@@ -194,6 +199,7 @@ typedef mpm_flow (*mpm_strength_fn)(const void *context, const struct mpm_materi
 /* One material, every number in the caller's units. Fill it with mpm_material_default or
    mpm_material_preset, change fields, then call mpm_material_check. */
 typedef struct mpm_material {
+    unsigned mark;     /* set by mpm_material_default: a material that never saw it is refused */
     const char *name;  /* of the preset; "" for none */
     mpm_units units;   /* those the preset was converted to */
 
@@ -271,7 +277,8 @@ MPM_API int mpm_material_preset_count(void);
 MPM_API const char *mpm_material_preset_name(int i);
 
 /* Checks every number the chosen laws read. Bounds are inclusive where published sets sit on them.
-   Returns MPM_OK, MPM_ERR_NAN or MPM_ERR_ARGUMENT with the field and its value. */
+   Returns MPM_OK, MPM_ERR_NAN or MPM_ERR_ARGUMENT with the field and its value; a material that
+   mpm_material_default never filled is refused as such. Test: 10_material "check". */
 MPM_API mpm_status mpm_material_check(const mpm_material *m, mpm_fault *fault);
 
 /* ---- the laws, for one point ----------------------------------------------------------------- */
@@ -352,6 +359,13 @@ static inline mpm_status mpm__ptw_within(const char *field, mpm_real value, mpm_
 static inline mpm_status mpm__ptw_positive(const char *field, mpm_real value, mpm_fault *fault)
 {
     return mpm_want(value > 0, fault, field, value, -1);
+}
+
+/* A material of zeros would divide by them in silence: this names what was forgotten. */
+static inline mpm_status mpm__ptw_marked(const mpm_material *m, mpm_fault *fault)
+{
+    if (m->mark == MPM_MARK) return MPM_OK;
+    return mpm_fail(fault, MPM_ERR_ARGUMENT, "material (not from mpm_material_default)", 0, -1);
 }
 
 /* Returns from the calling check at its first fault. */
@@ -1415,6 +1429,7 @@ MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *bl
     if (b->count < 0)
         return mpm_fail(b->fault, MPM_ERR_ARGUMENT, "count", (mpm_real)b->count, -1);
     if (!(b->dt > 0)) return mpm_fail(b->fault, MPM_ERR_ARGUMENT, "dt", b->dt, -1);
+    MPM__PTW_REQUIRE(mpm__ptw_marked(m, b->fault));
     h = mpm__ptw_share(m);
     bounds = mpm__ptw_bound(m);
     for (a.first = 0; a.first < b->count; a.first += MPM__PTW_LANES) {
@@ -1698,6 +1713,7 @@ MPM_API mpm_material mpm_material_default(void)
 {
     mpm_material m;
     memset(&m, 0, sizeof m); /* every choice's first value is 0: elastic, constant, none, linear */
+    m.mark = MPM_MARK;
     m.name = "";
     m.units = mpm_units_si();
     m.temperature = 298;
@@ -1730,7 +1746,9 @@ MPM_API mpm_status mpm_material_preset(mpm_material *m, const char *name, const 
 
 MPM_API mpm_status mpm_material_model(mpm_material *m, const char *model, mpm_fault *fault)
 {
-    const mpm__ptw_metal *t = MPM__PTW_FIND(mpm__ptw_metal, mpm__ptw_metals, m->name);
+    const mpm__ptw_metal *t;
+    MPM__PTW_REQUIRE(mpm__ptw_marked(m, fault));
+    t = MPM__PTW_FIND(mpm__ptw_metal, mpm__ptw_metals, m->name);
     if (!t) return mpm_fail(fault, MPM_ERR_UNKNOWN, "material", 0, -1);
     return mpm__ptw_use(m, t, model, fault);
 }
@@ -1814,8 +1832,6 @@ static inline mpm_status mpm__ptw_check_shear(const mpm_material *m, mpm_fault *
     } else if (m->shear == MPM_SHEAR_SCG) {
         MPM__PTW_REQUIRE(mpm__ptw_within("shear_a", m->shear_a, 0, big, fault));
         MPM__PTW_REQUIRE(mpm__ptw_within("shear_b", m->shear_b, 0, big, fault));
-    } else if (m->shear != MPM_SHEAR_CONSTANT) {
-        return mpm_fail(fault, MPM_ERR_ARGUMENT, "shear", (mpm_real)m->shear, -1);
     }
     return MPM_OK;
 }
@@ -1823,10 +1839,6 @@ static inline mpm_status mpm__ptw_check_shear(const mpm_material *m, mpm_fault *
 static inline mpm_status mpm__ptw_check_melt_and_eos(const mpm_material *m, mpm_fault *fault)
 {
     const mpm_real big = mpm__ptw_infinity();
-    if (m->melt != MPM_MELT_NONE && m->melt != MPM_MELT_CONSTANT && m->melt != MPM_MELT_SCG)
-        return mpm_fail(fault, MPM_ERR_ARGUMENT, "melt", (mpm_real)m->melt, -1);
-    if (m->eos != MPM_EOS_LINEAR && m->eos != MPM_EOS_MIE_GRUENEISEN)
-        return mpm_fail(fault, MPM_ERR_ARGUMENT, "eos", (mpm_real)m->eos, -1);
     if (m->melt != MPM_MELT_NONE)
         MPM__PTW_REQUIRE(mpm__ptw_positive("melt_temperature", m->melt_temperature, fault));
     if (m->melt == MPM_MELT_SCG) {
@@ -1842,9 +1854,29 @@ static inline mpm_status mpm__ptw_check_melt_and_eos(const mpm_material *m, mpm_
     return MPM_OK;
 }
 
+/* One more for each entry: adds up to the length of a list. */
+#define MPM__PTW_ONE(name, word, text) +1
+
+static inline mpm_status mpm__ptw_choice(const char *field, int choice, int count, mpm_fault *fault)
+{
+    return mpm_want(choice >= 0 && choice < count, fault, field, (mpm_real)choice, -1);
+}
+
+static inline mpm_status mpm__ptw_check_choices(const mpm_material *m, mpm_fault *fault)
+{
+    MPM__PTW_REQUIRE(mpm__ptw_choice("strength", (int)m->strength, MPM_STRENGTH_LIST(MPM__PTW_ONE), fault));
+    MPM__PTW_REQUIRE(mpm__ptw_choice("shear", (int)m->shear, MPM_SHEAR_LIST(MPM__PTW_ONE), fault));
+    MPM__PTW_REQUIRE(mpm__ptw_choice("melt", (int)m->melt, MPM_MELT_LIST(MPM__PTW_ONE), fault));
+    MPM__PTW_REQUIRE(mpm__ptw_choice("eos", (int)m->eos, MPM_EOS_LIST(MPM__PTW_ONE), fault));
+    MPM__PTW_REQUIRE(mpm__ptw_choice("mapping", (int)m->mapping, MPM_RETURN_LIST(MPM__PTW_ONE), fault));
+    return mpm__ptw_choice("rotation", (int)m->rotation, MPM_ROTATION_LIST(MPM__PTW_ONE), fault);
+}
+
 MPM_API mpm_status mpm_material_check(const mpm_material *m, mpm_fault *fault)
 {
     const mpm_real big = mpm__ptw_infinity();
+    MPM__PTW_REQUIRE(mpm__ptw_marked(m, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_check_choices(m, fault));
     MPM__PTW_REQUIRE(mpm__ptw_positive("density", m->density, fault));
     MPM__PTW_REQUIRE(mpm__ptw_within("temperature", m->temperature, 0, big, fault));
     MPM__PTW_REQUIRE(mpm__ptw_within("heat_fraction", m->heat_fraction, 0, 1, fault));
@@ -1856,10 +1888,6 @@ MPM_API mpm_status mpm_material_check(const mpm_material *m, mpm_fault *fault)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "poisson", m->poisson, -1);
     MPM__PTW_REQUIRE(mpm__ptw_within("viscosity_linear", m->viscosity_linear, 0, big, fault));
     MPM__PTW_REQUIRE(mpm__ptw_within("viscosity_quadratic", m->viscosity_quadratic, 0, big, fault));
-    if (m->mapping != MPM_RETURN_CONSISTENT && m->mapping != MPM_RETURN_STAGED)
-        return mpm_fail(fault, MPM_ERR_ARGUMENT, "mapping", (mpm_real)m->mapping, -1);
-    if (m->rotation != MPM_ROTATION_PROPER && m->rotation != MPM_ROTATION_JAUMANN)
-        return mpm_fail(fault, MPM_ERR_ARGUMENT, "rotation", (mpm_real)m->rotation, -1);
     MPM__PTW_REQUIRE(mpm__ptw_check_shear(m, fault));
     MPM__PTW_REQUIRE(mpm__ptw_check_melt_and_eos(m, fault));
     return mpm__ptw_check_strength(m, fault);

@@ -379,6 +379,7 @@ static inline mpm_status mpm__ptw_marked(const mpm_material *m, mpm_fault *fault
 
 /* Combinations of parameters that no point changes: computed once per block. */
 typedef struct mpm__ptw_shared {
+    const struct mpm__ptw_law *law;
     mpm_real melt_exponent;  /* 2 (Gamma0 - a - 1/3) of A 2.9 */
     mpm_real cold;           /* below this temperature nothing in the range eta_low..eta_high melts */
     mpm_real eta_low, eta_high;
@@ -394,6 +395,27 @@ typedef struct mpm__ptw_point {
     mpm_real eta, log_eta;     /* rho/rho0 and its logarithm */
     mpm_real rate_scale;       /* r = rate rate_scale eta^(1/6), from A 2.8 */
 } mpm__ptw_point;
+
+/* The plastic strains between which the flow stress is bounded by straight lines. */
+enum { MPM__PTW_KNOTS = 6 };
+static const mpm_real mpm__ptw_knots[MPM__PTW_KNOTS] = {MPM_R(0.0),  MPM_R(0.02), MPM_R(0.06),
+                                                        MPM_R(0.15), MPM_R(0.4),  MPM_R(1.5)};
+
+/* A lower bound of the static flow stress, of a solid point above 0 K: mu times the line between the values of
+   `shear` at the knots, plus `stress`. It spares most elastic points the full law. */
+typedef struct mpm__ptw_bounds {
+    mpm_real shear[MPM__PTW_KNOTS], stress;
+} mpm__ptw_bounds;
+
+/* All that is known of one flow stress. To add one: a line in MPM_STRENGTH_LIST, its numbers in mpm_material, the
+   functions named here and a row of mpm__ptw_laws. */
+typedef struct mpm__ptw_law {
+    mpm_strength strength;
+    mpm_status (*check)(const mpm_material *m, mpm_fault *fault);  /* the numbers it reads */
+    mpm_flow (*flow)(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p); /* below melting */
+    void (*bound)(const mpm_material *m, mpm__ptw_bounds *b);      /* fills zeros; NULL: none is known */
+    int (*preset)(mpm_material *m, const char *metal);             /* its set for a metal, 0: none; NULL: no sets */
+} mpm__ptw_law;
 
 /* ln(rho/rho0) is needed by the melting law and by xidot only. */
 static inline mpm_real mpm__ptw_melt(const mpm_material *m, mpm_real melt_exponent, mpm_real log_eta,
@@ -450,22 +472,6 @@ static inline void mpm__ptw_cold(const mpm_material *m, mpm__ptw_shared *h)
     h->cold = mpm__ptw_melt(m, h->melt_exponent, mpm_log(h->eta_low > 0 ? h->eta_low : 1),
                             h->eta_low);
     h->cold *= 1 - 64 * MPM_EPSILON;
-}
-
-static inline mpm__ptw_shared mpm__ptw_share(const mpm_material *m)
-{
-    const mpm_ptw *c = &m->ptw;
-    mpm__ptw_shared h;
-    mpm__ptw_cold(m, &h);
-    h.rate_factor = 0;
-    h.cross = mpm__ptw_infinity();
-    if (m->strength == MPM_STRENGTH_PTW) {
-        mpm_real atoms = mpm_cbrt(4 * MPM_PI * m->density / (3 * c->atomic_mass));
-        h.rate_factor = c->gamma * atoms / (2 * mpm_sqrt(m->density));
-        if (c->y2 > c->s1)
-            h.cross = mpm_log(c->s0 / c->y1) / (c->y2 - c->s1) + MPM_R(0.01);
-    }
-    return h;
 }
 
 /* Everything about a point that does not depend on strain and rate, its shear modulus given. */
@@ -655,6 +661,14 @@ static inline mpm_flow mpm__ptw_flow_ptw(const mpm_material *m, const mpm__ptw_s
     return f;
 }
 
+/* At rate 0 the stress over mu is a rising concave function of strain alone: the chords lie below it. */
+static inline void mpm__ptw_bound_ptw(const mpm_material *m, mpm__ptw_bounds *b)
+{
+    const mpm__ptw_levels v = mpm__ptw_static_levels(&m->ptw, 1);
+    int i;
+    for (i = 0; i < MPM__PTW_KNOTS; i++) b->shear[i] = 2 * mpm__ptw_harden(&m->ptw, &v, mpm__ptw_knots[i]).stress;
+}
+
 /* Whether a rate lies beyond r = 1: r^6 = (rate rate_scale)^6 eta needs no logarithm. */
 static inline int mpm__ptw_overdriven(const mpm__ptw_point *p, mpm_real rate)
 {
@@ -664,9 +678,29 @@ static inline int mpm__ptw_overdriven(const mpm__ptw_point *p, mpm_real rate)
 
 /* ---- the other strengths ------------------------------------------------------------------- */
 
-static inline mpm_flow mpm__ptw_flow_linear(const mpm_material *m, const mpm__ptw_point *p)
+/* sigma = infinity */
+static inline mpm_flow mpm__ptw_flow_elastic(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
 {
     mpm_flow f;
+    (void)m;
+    (void)h;
+    (void)p;
+    f.stress = mpm__ptw_infinity();
+    f.strain_slope = f.rate_slope = 0;
+    return f;
+}
+
+static inline mpm_flow mpm__ptw_flow_user(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
+{
+    (void)h;
+    return m->strength_fn(m->strength_context, m, &p->state);
+}
+
+/* sigma = Y + H eps, at least 0 */
+static inline mpm_flow mpm__ptw_flow_linear(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
+{
+    mpm_flow f;
+    (void)h;
     f.stress = m->linear_yield + m->linear_hardening * p->state.plastic_strain;
     f.strain_slope = m->linear_hardening;
     f.rate_slope = 0;
@@ -674,9 +708,23 @@ static inline mpm_flow mpm__ptw_flow_linear(const mpm_material *m, const mpm__pt
     return f;
 }
 
-/* With n < 1 the printed law starts with an infinite slope; at zero strain the slope (only) is
-   therefore taken at the elastic strain of first yield, a/(3 mu). */
-static inline mpm_flow mpm__ptw_flow_jc(const mpm_material *m, const mpm__ptw_point *p)
+static inline void mpm__ptw_bound_linear(const mpm_material *m, mpm__ptw_bounds *b)
+{
+    if (m->linear_hardening >= 0) b->stress = m->linear_yield;
+}
+
+/* d (b eps^n)/d eps. With n < 1 it starts at infinity; at zero strain (only) it is therefore taken at the elastic
+   strain of first yield, a/(3 mu). */
+static inline mpm_real mpm__ptw_slope_jc(const mpm_jc *c, mpm_real strain, mpm_real hardened, mpm_real shear)
+{
+    mpm_real first = c->a / (3 * shear);
+    if (!(c->b > 0)) return 0;
+    if (strain > 0) return c->n * hardened / strain;
+    return first > 0 ? c->n * (c->b * mpm_pow(first, c->n)) / first : 0;
+}
+
+/* sigma = (a + b eps^n) (1 + c ln(rate/rate0)) (1 - T*^m), T* = (T - T0)/(T_m - T0) */
+static inline mpm_flow mpm__ptw_flow_jc(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
 {
     const mpm_jc *c = &m->jc;
     mpm_real strain = p->state.plastic_strain, rate = p->state.plastic_rate;
@@ -684,46 +732,402 @@ static inline mpm_flow mpm__ptw_flow_jc(const mpm_material *m, const mpm__ptw_po
     mpm_real soft = T_star > 0 ? 1 - mpm_pow(T_star, c->m) : 1;
     mpm_real hard = c->a + (strain > 0 ? c->b * mpm_pow(strain, c->n) : 0);
     mpm_real fast = rate > c->rate ? 1 + c->c * mpm_log(rate / c->rate) : 1;
-    mpm_real from = strain > 0 ? strain : c->a / (3 * p->shear);
     mpm_flow f;
+    (void)h;
     f.stress = hard * fast * soft;
-    f.strain_slope = 0;
-    if (from > 0 && c->b > 0) {
-        mpm_real grown = from > strain ? c->b * mpm_pow(from, c->n) : hard - c->a;
-        f.strain_slope = c->n * grown / from * fast * soft;
-    }
+    f.strain_slope = mpm__ptw_slope_jc(c, strain, hard - c->a, p->shear) * fast * soft;
     f.rate_slope = rate > c->rate ? hard * soft * c->c : 0;
     return f;
 }
 
-static inline mpm_flow mpm__ptw_flow_scg(const mpm_material *m, const mpm__ptw_point *p)
+/* sigma = min(y0 (1 + beta eps)^n, ymax) mu/mu0 */
+static inline mpm_flow mpm__ptw_flow_scg(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
 {
     const mpm_scg *c = &m->scg;
     mpm_real stretch = 1 + c->beta * p->state.plastic_strain;
     mpm_real hard = c->y0 * mpm_pow(stretch, c->n), scale = p->shear / m->shear_modulus;
     mpm_flow f;
+    (void)h;
     f.stress = mpm__ptw_min(hard, c->ymax) * scale;
     f.strain_slope = hard < c->ymax ? c->n * c->beta * hard / stretch * scale : 0;
     f.rate_slope = 0;
     return f;
 }
 
-static inline mpm_flow mpm__ptw_flow(const mpm_material *m, const mpm__ptw_shared *h,
-                                     const mpm__ptw_point *p)
+/* Concave for n <= 1, so that chords lie below it; for more, the stress at zero strain. */
+static inline void mpm__ptw_bound_scg(const mpm_material *m, mpm__ptw_bounds *b)
+{
+    const mpm_scg *c = &m->scg;
+    int i;
+    for (i = 0; i < MPM__PTW_KNOTS; i++) {
+        mpm_real strain = c->n > 1 ? 0 : mpm__ptw_knots[i];
+        b->shear[i] = mpm__ptw_min(c->y0 * mpm_pow(1 + c->beta * strain, c->n), c->ymax) / m->shear_modulus;
+    }
+}
+
+/* ---- the numbers of metals ----------------------------------------------------------------- */
+
+/* All in SI; the tags are those of the header's list of sources. The range of a set is that of its
+   source: [PTW] 1e-3 .. 1e12 /s, T < T_m; [S] strength 1e5 /s and above, [JC] up to about 1e5 /s
+   and strains of order 1; Hugoniots up to the pressures of the cited shock data (tens of GPa). */
+
+/* What every model of a metal shares. E = nu = 0: from G0 of [S] and K = rho c0^2 [C].
+   c0 = 0: no Hugoniot was found; the equation of state is then the linear one. */
+typedef struct mpm__ptw_metal {
+    const char *name, *model;                /* preferred strength */
+    double density, heat;                    /* kg/m^3, J/(kg K) */
+    double young, poisson;                   /* Pa, 1 */
+    double sound, slope, gruneisen;          /* m/s, 1, 1 */
+} mpm__ptw_metal;
+
+static const mpm__ptw_metal mpm__ptw_metals[] = {
+    /* rho, Cp, E, nu, c0, s, Gamma0 of the Al of source A, which prints none of the last three:
+       the values are those of the shock data for 1100-O [S] */
+    {"al", "ptw", 2700, 900, 70e9, 0.33, 5386, 1.339, 1.97},
+    {"al1100", "scg", 2707, 884, 0, 0, 5386, 1.339, 1.97},        /* [S] */
+    {"al6061-t6", "scg", 2703, 885, 0, 0, 5240, 1.40, 1.97},      /* [S] */
+    {"al7075-t6", "scg", 2803, 848, 0, 0, 5200, 1.36, 2.20},      /* [S] */
+    {"cu", "ptw", 8930, 383, 0, 0, 3940, 1.489, 2.02},            /* [S], OFHC half hard */
+    {"ni", "scg", 8900, 440, 0, 0, 4650, 1.445, 1.93},            /* [S]; Cp [M] */
+    /* [S]; its Hugoniot has further terms (S2 = -5.138), so this line is for mu up to about 0.05 */
+    {"ti", "scg", 4510, 500, 0, 0, 5020, 1.536, 1.23},
+    {"ti-6al-4v", "scg", 4419, 525, 0, 0, 5130, 1.028, 1.23},     /* [S] */
+    {"ta", "ptw", 16690, 135, 0, 0, 3410, 1.20, 1.67},            /* [S] */
+    {"zn", "scg", 7139, 389, 0, 0, 3030, 1.55, 2.24},             /* [S] */
+    {"304", "ptw", 7900, 500, 193e9, 0.29, 0, 0, 0},              /* data sheets of the grade */
+    {"4340", "jc", 7830, 477, 200e9, 0.29, 0, 0, 0}               /* [JC] and data sheets */
+};
+
+/* Steinberg-Cochran-Guinan: shear modulus, melting and strength. */
+typedef struct mpm__ptw_set_scg {
+    const char *name;
+    double shear, a, b;          /* G0 [Pa], A [1/Pa], B [1/K] */
+    double melt, melt_a;         /* T_m0 [K] of the fit at rho0, a */
+    double y0, ymax, beta, n;    /* [Pa, Pa, 1, 1] */
+} mpm__ptw_set_scg;
+
+static const mpm__ptw_set_scg mpm__ptw_sets_scg[] = {
+    /* all [S]; y0 of al1100 is [M] (0.04 GPa; a deck that circulates has ten times that) */
+    {"al1100", 27.1e9, 6.52e-11, 6.16e-4, 1220, 1.5, 0.04e9, 0.48e9, 400, 0.27},
+    {"al6061-t6", 27.6e9, 6.52e-11, 6.16e-4, 1220, 1.5, 0.29e9, 0.68e9, 125, 0.10},
+    {"al7075-t6", 26.7e9, 6.52e-11, 6.16e-4, 1220, 1.7, 0.42e9, 0.81e9, 965, 0.10},
+    {"cu", 47.7e9, 2.83e-11, 3.77e-4, 1790, 1.5, 0.12e9, 0.64e9, 36, 0.45},
+    {"ni", 85.5e9, 1.63e-11, 3.26e-4, 2330, 1.4, 0.14e9, 1.20e9, 46, 0.53},
+    {"ti", 43.4e9, 1.15e-11, 6.22e-4, 2260, 1.0, 0.71e9, 1.45e9, 780, 0.065},
+    {"ti-6al-4v", 41.9e9, 1.15e-11, 6.44e-4, 2110, 1.0, 1.33e9, 2.12e9, 12, 0.10},
+    {"ta", 69.0e9, 1.45e-11, 1.30e-4, 4340, 1.3, 0.77e9, 1.10e9, 10, 0.1},
+    {"zn", 39.5e9, 5.95e-11, 7.60e-4, 900, 1.7, 0.15e9, 0.92e9, 100, 0.20}
+};
+
+/* Johnson-Cook; reference rate 1/s, reference temperature 298 K. */
+typedef struct mpm__ptw_set_jc {
+    const char *name;
+    double a, b, n, c, m, melt;  /* Pa, Pa, 1, 1, 1, K */
+} mpm__ptw_set_jc;
+
+static const mpm__ptw_set_jc mpm__ptw_sets_jc[] = {
+    {"al1100", 148.4e6, 345.5e6, 0.183, 0.001, 0.895, 916},  /* [M] */
+    {"al6061-t6", 324e6, 114e6, 0.42, 0.002, 1.34, 925},     /* [JC] */
+    {"cu", 90e6, 292e6, 0.31, 0.025, 1.09, 1356},            /* [JC], OFHC */
+    {"ni", 163e6, 648e6, 0.33, 0.006, 1.44, 1726},           /* [M] */
+    {"ti-6al-4v", 862e6, 331e6, 0.34, 0.012, 0.8, 1878},     /* [M] */
+    {"304", 310e6, 1000e6, 0.65, 0.07, 1.0, 1673},           /* 304L, [JC] form */
+    {"4340", 792e6, 510e6, 0.26, 0.014, 1.03, 1793}          /* [JC] */
+};
+
+/* Preston-Tonks-Wallace with the shear modulus and melting law it is used with. */
+typedef struct mpm__ptw_set_ptw {
+    const char *name;
+    double theta, d, s0, sinf, kappa, gamma, y0, yinf, y1, y2, s1;
+    double atom;                 /* mass of one atom [kg] */
+    mpm_shear shear;             /* MTS: mu0, D [Pa], T0 [K]; SCG: the table above; constant: mu0 */
+    double mu0, mts_d, mts_t;
+    mpm_melt melt;
+    double melt0, melt_a;        /* [K], 1 */
+} mpm__ptw_set_ptw;
+
+static const mpm__ptw_set_ptw mpm__ptw_sets_ptw[] = {
+    /* [A] table 2.1. The table prints 4.48039e-23 kg per atom, which is grams: 26.98 u is
+       4.48039e-26 kg. T_m0: ambient melting point of Al; a: [S]. */
+    {"al", 0.01156, 3, 0.01489, 0.002819, 1.3, 2.04e-5, 0.0115, 0.002003, 0.0168, 0.2339, 0.2034,
+     4.48039e-26, MPM_SHEAR_MTS, 28.8e9, 3.44e9, 215, MPM_MELT_SCG, 933.5, 1.5},
+    /* [PTW]; shear modulus: MTS fit of Cu in use with it; melting [S]; 63.546 u */
+    {"cu", 0.025, 2, 0.0085, 0.00055, 0.11, 1e-5, 1e-4, 1e-4, 0.094, 0.575, 0.25,
+     1.055206e-25, MPM_SHEAR_MTS, 51.3e9, 3.0e9, 165, MPM_MELT_SCG, 1790, 1.5},
+    /* [PTW]; shear modulus and melting [S]; 180.948 u */
+    {"ta", 0.02, 0, 0.012, 0.00325, 0.6, 4e-5, 0.01, 0.00125, 0.012, 0.4, 0.23,
+     3.004712e-25, MPM_SHEAR_SCG, 0, 0, 0, MPM_MELT_SCG, 4340, 1.3},
+    /* [PTW], which prints G0 = 89.5 GPa at T = 0 with a fall towards melting that was not seen; instead
+       the room temperature shear modulus of data sheets, held constant; melting: solidus of 304; the
+       atom is that of iron, 55.845 u */
+    {"304", 0.02, 10, 0.05, 0.0075, 0.3, 1e-3, 0.0069, 0.0015, 0.05, 0.46, 0.25,
+     9.273280e-26, MPM_SHEAR_CONSTANT, 77e9, 0, 0, MPM_MELT_CONSTANT, 1673, 0}
+};
+
+/* Linear isotropic hardening: the Taylor bar benchmark's copper, with its own moduli. */
+typedef struct mpm__ptw_set_linear {
+    const char *name;
+    double yield, hardening, young, poisson;  /* Pa, Pa, Pa, 1 */
+} mpm__ptw_set_linear;
+
+static const mpm__ptw_set_linear mpm__ptw_sets_linear[] = {
+    {"cu", 400e6, 100e6, 117e9, 0.35}
+};
+
+/* The entry of a table whose first member is the name, or NULL. */
+#define MPM__PTW_FIND(type, table, wanted) \
+    ((const type *)mpm__ptw_find(table, sizeof(type), sizeof(table) / sizeof(type), wanted))
+
+static inline const void *mpm__ptw_find(const void *table, size_t size, size_t count, const char *name)
+{
+    const char *entry = (const char *)table;
+    size_t i;
+    for (i = 0; name && i < count; i++, entry += size)
+        if (!strcmp(*(const char *const *)(const void *)entry, name)) return entry;
+    return NULL;
+}
+
+/* A stress in Pa, in the caller's units. */
+static inline mpm_real mpm__ptw_stress_in(const mpm_material *m, double si)
+{
+    return (mpm_real)(si / mpm_units_stress(&m->units));
+}
+
+/* Constant moduli, linear equation of state, no melting: what a preset starts from. E in Pa. */
+static inline void mpm__ptw_use_textbook(mpm_material *m, double young, double nu)
+{
+    m->shear = MPM_SHEAR_CONSTANT;
+    m->melt = MPM_MELT_NONE;
+    m->eos = MPM_EOS_LINEAR;
+    m->young = mpm__ptw_stress_in(m, young);
+    m->poisson = (mpm_real)nu;
+    m->shear_modulus = mpm__ptw_stress_in(m, young / (2 * (1 + nu)));
+}
+
+static inline int mpm__ptw_use_elastic(mpm_material *m, const char *metal)
+{
+    (void)metal;
+    m->eos = MPM_EOS_LINEAR;
+    return 1;
+}
+
+static inline int mpm__ptw_use_linear(mpm_material *m, const char *metal)
+{
+    const mpm__ptw_set_linear *t = MPM__PTW_FIND(mpm__ptw_set_linear, mpm__ptw_sets_linear, metal);
+    if (!t) return 0;
+    mpm__ptw_use_textbook(m, t->young, t->poisson);
+    m->linear_yield = mpm__ptw_stress_in(m, t->yield);
+    m->linear_hardening = mpm__ptw_stress_in(m, t->hardening);
+    return 1;
+}
+
+static inline int mpm__ptw_use_jc(mpm_material *m, const char *metal)
+{
+    const mpm__ptw_set_jc *t = MPM__PTW_FIND(mpm__ptw_set_jc, mpm__ptw_sets_jc, metal);
+    if (!t) return 0;
+    m->shear_modulus = m->young / (2 * (1 + m->poisson));
+    m->melt = MPM_MELT_CONSTANT;
+    m->melt_temperature = (mpm_real)t->melt;
+    m->jc.a = mpm__ptw_stress_in(m, t->a);
+    m->jc.b = mpm__ptw_stress_in(m, t->b);
+    m->jc.n = (mpm_real)t->n;
+    m->jc.c = (mpm_real)t->c;
+    m->jc.m = (mpm_real)t->m;
+    m->jc.rate = (mpm_real)m->units.time; /* 1/s */
+    m->jc.temperature = 298;
+    return 1;
+}
+
+static inline void mpm__ptw_use_shear_scg(mpm_material *m, const mpm__ptw_set_scg *t)
+{
+    m->shear = MPM_SHEAR_SCG;
+    m->shear_modulus = mpm__ptw_stress_in(m, t->shear);
+    m->shear_a = (mpm_real)(t->a * mpm_units_stress(&m->units));
+    m->shear_b = (mpm_real)t->b;
+}
+
+static inline int mpm__ptw_use_scg(mpm_material *m, const char *metal)
+{
+    const mpm__ptw_set_scg *t = MPM__PTW_FIND(mpm__ptw_set_scg, mpm__ptw_sets_scg, metal);
+    if (!t) return 0;
+    mpm__ptw_use_shear_scg(m, t);
+    m->melt = MPM_MELT_SCG;
+    m->melt_temperature = (mpm_real)t->melt;
+    m->melt_a = (mpm_real)t->melt_a;
+    m->scg.y0 = mpm__ptw_stress_in(m, t->y0);
+    m->scg.ymax = mpm__ptw_stress_in(m, t->ymax);
+    m->scg.beta = (mpm_real)t->beta;
+    m->scg.n = (mpm_real)t->n;
+    return 1;
+}
+
+/* The shear modulus and melting law that a set of PTW belongs to. */
+static inline void mpm__ptw_use_moduli_of(mpm_material *m, const mpm__ptw_set_ptw *t)
+{
+    m->shear = t->shear;
+    m->shear_modulus = mpm__ptw_stress_in(m, t->mu0);
+    m->shear_d = mpm__ptw_stress_in(m, t->mts_d);
+    m->shear_t = (mpm_real)t->mts_t;
+    if (t->shear == MPM_SHEAR_SCG)
+        mpm__ptw_use_shear_scg(m, MPM__PTW_FIND(mpm__ptw_set_scg, mpm__ptw_sets_scg, t->name));
+    m->melt = t->melt;
+    m->melt_temperature = (mpm_real)t->melt0;
+    m->melt_a = (mpm_real)t->melt_a;
+}
+
+static inline int mpm__ptw_use_ptw(mpm_material *m, const char *metal)
+{
+    const mpm__ptw_set_ptw *t = MPM__PTW_FIND(mpm__ptw_set_ptw, mpm__ptw_sets_ptw, metal);
+    mpm_ptw *c = &m->ptw;
+    if (!t) return 0;
+    mpm__ptw_use_moduli_of(m, t);
+    c->theta = (mpm_real)t->theta;
+    c->d = (mpm_real)t->d;
+    c->s0 = (mpm_real)t->s0;
+    c->sinf = (mpm_real)t->sinf;
+    c->kappa = (mpm_real)t->kappa;
+    c->gamma = (mpm_real)t->gamma;
+    c->y0 = (mpm_real)t->y0;
+    c->yinf = (mpm_real)t->yinf;
+    c->y1 = (mpm_real)t->y1;
+    c->y2 = (mpm_real)t->y2;
+    c->s1 = (mpm_real)t->s1;
+    c->atomic_mass = (mpm_real)(t->atom / m->units.mass);
+    return 1;
+}
+
+/* ---- checks of the strengths --------------------------------------------------------------- */
+
+static inline mpm_status mpm__ptw_check_elastic(const mpm_material *m, mpm_fault *fault)
+{
+    (void)m;
+    (void)fault;
+    return MPM_OK;
+}
+
+static inline mpm_status mpm__ptw_check_linear(const mpm_material *m, mpm_fault *fault)
+{
+    const mpm_real big = mpm__ptw_infinity();
+    MPM__PTW_REQUIRE(mpm__ptw_within("linear_yield", m->linear_yield, 0, big, fault));
+    return mpm__ptw_within("linear_hardening", m->linear_hardening, -m->shear_modulus, big, fault);
+}
+
+static inline mpm_status mpm__ptw_check_scg(const mpm_material *m, mpm_fault *fault)
+{
+    const mpm_real big = mpm__ptw_infinity();
+    MPM__PTW_REQUIRE(mpm__ptw_within("scg.y0", m->scg.y0, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("scg.ymax", m->scg.ymax, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("scg.beta", m->scg.beta, 0, big, fault));
+    return mpm__ptw_within("scg.n", m->scg.n, 0, big, fault);
+}
+
+static inline mpm_status mpm__ptw_check_ptw(const mpm_material *m, mpm_fault *fault)
+{
+    const mpm_ptw *c = &m->ptw;
+    const mpm_real big = mpm__ptw_infinity();
+    MPM__PTW_REQUIRE(mpm__ptw_positive("ptw.theta", c->theta, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.d", c->d, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_positive("ptw.s0", c->s0, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.sinf", c->sinf, 0, c->s0, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.y0", c->y0, 0, c->s0, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.yinf", c->yinf, 0, mpm__ptw_min(c->y0, c->sinf), fault));
+    MPM__PTW_REQUIRE(mpm__ptw_positive("ptw.y1", c->y1, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.y2", c->y2, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.s1", c->s1, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.kappa", c->kappa, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_positive("ptw.gamma", c->gamma, fault));
+    return mpm__ptw_positive("ptw.atomic_mass", c->atomic_mass, fault);
+}
+
+static inline mpm_status mpm__ptw_check_jc(const mpm_material *m, mpm_fault *fault)
+{
+    const mpm_jc *c = &m->jc;
+    const mpm_real big = mpm__ptw_infinity();
+    MPM__PTW_REQUIRE(mpm__ptw_within("jc.a", c->a, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("jc.b", c->b, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("jc.n", c->n, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("jc.c", c->c, 0, big, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_positive("jc.m", c->m, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_positive("jc.rate", c->rate, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_within("jc.temperature", c->temperature, 0, big, fault));
+    if (m->melt != MPM_MELT_NONE && !(m->melt_temperature > c->temperature))
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "melt_temperature", m->melt_temperature, -1);
+    return MPM_OK;
+}
+
+static inline mpm_status mpm__ptw_check_user(const mpm_material *m, mpm_fault *fault)
+{
+    return m->strength_fn ? MPM_OK : mpm_fail(fault, MPM_ERR_ARGUMENT, "strength_fn", 0, -1);
+}
+
+/* ---- the table of strengths ---------------------------------------------------------------- */
+
+static const mpm__ptw_law mpm__ptw_laws[] = {
+    {MPM_STRENGTH_ELASTIC, mpm__ptw_check_elastic, mpm__ptw_flow_elastic, NULL, mpm__ptw_use_elastic},
+    {MPM_STRENGTH_LINEAR, mpm__ptw_check_linear, mpm__ptw_flow_linear, mpm__ptw_bound_linear, mpm__ptw_use_linear},
+    {MPM_STRENGTH_JC, mpm__ptw_check_jc, mpm__ptw_flow_jc, NULL, mpm__ptw_use_jc},
+    {MPM_STRENGTH_SCG, mpm__ptw_check_scg, mpm__ptw_flow_scg, mpm__ptw_bound_scg, mpm__ptw_use_scg},
+    {MPM_STRENGTH_PTW, mpm__ptw_check_ptw, mpm__ptw_flow_ptw, mpm__ptw_bound_ptw, mpm__ptw_use_ptw},
+    {MPM_STRENGTH_USER, mpm__ptw_check_user, mpm__ptw_flow_user, NULL, NULL}
+};
+
+/* The row of a strength; the first for one that is in no list, which mpm_material_check refuses. */
+static inline const mpm__ptw_law *mpm__ptw_law_of(mpm_strength strength)
+{
+    size_t i, n = sizeof mpm__ptw_laws / sizeof mpm__ptw_laws[0];
+    for (i = 0; i < n; i++)
+        if (mpm__ptw_laws[i].strength == strength) return &mpm__ptw_laws[i];
+    return &mpm__ptw_laws[0];
+}
+
+/* The row of a name in MPM_STRENGTH_LIST, or NULL. */
+static inline const mpm__ptw_law *mpm__ptw_law_named(const char *name)
+{
+#define MPM__PTW_NAMED(strength, word, text) \
+    if (!strcmp(name, word)) return mpm__ptw_law_of(strength);
+    if (name) {
+        MPM_STRENGTH_LIST(MPM__PTW_NAMED)
+    }
+#undef MPM__PTW_NAMED
+    return NULL;
+}
+
+static inline mpm__ptw_shared mpm__ptw_share(const mpm_material *m)
+{
+    const mpm_ptw *c = &m->ptw;
+    mpm__ptw_shared h;
+    h.law = mpm__ptw_law_of(m->strength);
+    mpm__ptw_cold(m, &h);
+    h.rate_factor = 0;
+    h.cross = mpm__ptw_infinity();
+    if (m->strength == MPM_STRENGTH_PTW) {
+        mpm_real atoms = mpm_cbrt(4 * MPM_PI * m->density / (3 * c->atomic_mass));
+        h.rate_factor = c->gamma * atoms / (2 * mpm_sqrt(m->density));
+        if (c->y2 > c->s1)
+            h.cross = mpm_log(c->s0 / c->y1) / (c->y2 - c->s1) + MPM_R(0.01);
+    }
+    return h;
+}
+
+static inline mpm_flow mpm__ptw_flow(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
 {
     mpm_flow f;
     f.stress = f.strain_slope = f.rate_slope = 0;
-    if (p->state.temperature >= p->melt) return f;
-    switch (m->strength) {
-    case MPM_STRENGTH_LINEAR: return mpm__ptw_flow_linear(m, p);
-    case MPM_STRENGTH_JC: return mpm__ptw_flow_jc(m, p);
-    case MPM_STRENGTH_SCG: return mpm__ptw_flow_scg(m, p);
-    case MPM_STRENGTH_PTW: return mpm__ptw_flow_ptw(m, h, p);
-    case MPM_STRENGTH_USER: return m->strength_fn(m->strength_context, m, &p->state);
-    default: break;
-    }
-    f.stress = mpm__ptw_infinity();
-    return f;
+    return p->state.temperature >= p->melt ? f : h->law->flow(m, h, p);
+}
+
+/* The bound of the material's strength. The staged return yields at the last step's rate: only the value at zero
+   strain (tau_y >= yinf of PTW) is used there. The factor below 1 covers rounding. */
+static inline mpm__ptw_bounds mpm__ptw_bound(const mpm_material *m, const mpm__ptw_shared *h)
+{
+    const mpm_real safe = 1 - 64 * MPM_EPSILON;
+    mpm__ptw_bounds b;
+    int i;
+    memset(&b, 0, sizeof b);
+    if (h->law->bound) h->law->bound(m, &b);
+    b.stress *= safe;
+    for (i = MPM__PTW_KNOTS - 1; i >= 0; i--) b.shear[i] = safe * b.shear[m->mapping == MPM_RETURN_STAGED ? 0 : i];
+    return b;
 }
 
 /* ---- equation of state --------------------------------------------------------------------- */
@@ -1019,48 +1423,6 @@ static inline void mpm__ptw_try(mpm__ptw_lanes *a)
                       a->trial[5][i] * a->trial[5][i];
         a->mises2[i] = MPM_R(1.5) * n2 + 3 * t2;
     }
-}
-
-/* The plastic strains between which the flow stress is bounded by straight lines. */
-enum { MPM__PTW_KNOTS = 6 };
-static const mpm_real mpm__ptw_knots[MPM__PTW_KNOTS] = {MPM_R(0.0),  MPM_R(0.02), MPM_R(0.06),
-                                                        MPM_R(0.15), MPM_R(0.4),  MPM_R(1.5)};
-
-/* The static flow stress of a solid point above 0 K is at least mu times the line between the
-   values of `shear` at the knots, plus `stress`. */
-typedef struct mpm__ptw_bounds {
-    mpm_real shear[MPM__PTW_KNOTS], stress;
-} mpm__ptw_bounds;
-
-/* The lower bound of the static flow stress that spares most elastic points the full law. The
-   static stress of PTW and (with n <= 1) SCG is mu times a rising concave function of strain
-   alone, so the chords between knots lie below it, and the last value bounds it beyond. The staged
-   return yields at the last step's rate: only tau_y >= yinf is used there. The factor below 1
-   covers rounding. */
-static inline mpm__ptw_bounds mpm__ptw_bound(const mpm_material *m)
-{
-    const mpm_real safe = 1 - 64 * MPM_EPSILON;
-    int concave = m->mapping == MPM_RETURN_CONSISTENT &&
-                  !(m->strength == MPM_STRENGTH_SCG && m->scg.n > 1);
-    mpm__ptw_levels v;
-    mpm__ptw_point p;
-    mpm__ptw_bounds bounds;
-    int i;
-    memset(&p, 0, sizeof p);
-    p.shear = m->shear_modulus;
-    v = mpm__ptw_static_levels(&m->ptw, 1);
-    for (i = 0; i < MPM__PTW_KNOTS; i++) {
-        p.state.plastic_strain = concave ? mpm__ptw_knots[i] : 0;
-        bounds.shear[i] = 0;
-        if (m->strength == MPM_STRENGTH_PTW)
-            bounds.shear[i] = safe * 2 * mpm__ptw_harden(&m->ptw, &v, p.state.plastic_strain).stress;
-        else if (m->strength == MPM_STRENGTH_SCG)
-            bounds.shear[i] = safe * mpm__ptw_flow_scg(m, &p).stress / m->shear_modulus;
-    }
-    bounds.stress = 0;
-    if (m->strength == MPM_STRENGTH_LINEAR && m->linear_hardening >= 0)
-        bounds.stress = safe * m->linear_yield;
-    return bounds;
 }
 
 /* The line between the knots at a strain >= 0. */
@@ -1431,7 +1793,7 @@ MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *bl
     if (!(b->dt > 0)) return mpm_fail(b->fault, MPM_ERR_ARGUMENT, "dt", b->dt, -1);
     MPM__PTW_REQUIRE(mpm__ptw_marked(m, b->fault));
     h = mpm__ptw_share(m);
-    bounds = mpm__ptw_bound(m);
+    bounds = mpm__ptw_bound(m, &h);
     for (a.first = 0; a.first < b->count; a.first += MPM__PTW_LANES) {
         a.count = b->count - a.first < MPM__PTW_LANES ? b->count - a.first : MPM__PTW_LANES;
         mpm__ptw_split(b, &a);
@@ -1451,260 +1813,31 @@ MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *bl
 
 /* ---- presets ------------------------------------------------------------------------------- */
 
-/* All in SI; the tags are those of the header's list of sources. The range of a set is that of its
-   source: [PTW] 1e-3 .. 1e12 /s, T < T_m; [S] strength 1e5 /s and above, [JC] up to about 1e5 /s
-   and strains of order 1; Hugoniots up to the pressures of the cited shock data (tens of GPa). */
-
-/* What every model of a metal shares. E = nu = 0: from G0 of [S] and K = rho c0^2 [C].
-   c0 = 0: no Hugoniot was found; the equation of state is then the linear one. */
-typedef struct mpm__ptw_metal {
-    const char *name, *model;                /* preferred strength */
-    double density, heat;                    /* kg/m^3, J/(kg K) */
-    double young, poisson;                   /* Pa, 1 */
-    double sound, slope, gruneisen;          /* m/s, 1, 1 */
-} mpm__ptw_metal;
-
-static const mpm__ptw_metal mpm__ptw_metals[] = {
-    /* rho, Cp, E, nu, c0, s, Gamma0 of the Al of source A, which prints none of the last three:
-       the values are those of the shock data for 1100-O [S] */
-    {"al", "ptw", 2700, 900, 70e9, 0.33, 5386, 1.339, 1.97},
-    {"al1100", "scg", 2707, 884, 0, 0, 5386, 1.339, 1.97},        /* [S] */
-    {"al6061-t6", "scg", 2703, 885, 0, 0, 5240, 1.40, 1.97},      /* [S] */
-    {"al7075-t6", "scg", 2803, 848, 0, 0, 5200, 1.36, 2.20},      /* [S] */
-    {"cu", "ptw", 8930, 383, 0, 0, 3940, 1.489, 2.02},            /* [S], OFHC half hard */
-    {"ni", "scg", 8900, 440, 0, 0, 4650, 1.445, 1.93},            /* [S]; Cp [M] */
-    /* [S]; its Hugoniot has further terms (S2 = -5.138), so this line is for mu up to about 0.05 */
-    {"ti", "scg", 4510, 500, 0, 0, 5020, 1.536, 1.23},
-    {"ti-6al-4v", "scg", 4419, 525, 0, 0, 5130, 1.028, 1.23},     /* [S] */
-    {"ta", "ptw", 16690, 135, 0, 0, 3410, 1.20, 1.67},            /* [S] */
-    {"zn", "scg", 7139, 389, 0, 0, 3030, 1.55, 2.24},             /* [S] */
-    {"304", "ptw", 7900, 500, 193e9, 0.29, 0, 0, 0},              /* data sheets of the grade */
-    {"4340", "jc", 7830, 477, 200e9, 0.29, 0, 0, 0}               /* [JC] and data sheets */
-};
-
-/* Steinberg-Cochran-Guinan: shear modulus, melting and strength. */
-typedef struct mpm__ptw_set_scg {
-    const char *name;
-    double shear, a, b;          /* G0 [Pa], A [1/Pa], B [1/K] */
-    double melt, melt_a;         /* T_m0 [K] of the fit at rho0, a */
-    double y0, ymax, beta, n;    /* [Pa, Pa, 1, 1] */
-} mpm__ptw_set_scg;
-
-static const mpm__ptw_set_scg mpm__ptw_sets_scg[] = {
-    /* all [S]; y0 of al1100 is [M] (0.04 GPa; a deck that circulates has ten times that) */
-    {"al1100", 27.1e9, 6.52e-11, 6.16e-4, 1220, 1.5, 0.04e9, 0.48e9, 400, 0.27},
-    {"al6061-t6", 27.6e9, 6.52e-11, 6.16e-4, 1220, 1.5, 0.29e9, 0.68e9, 125, 0.10},
-    {"al7075-t6", 26.7e9, 6.52e-11, 6.16e-4, 1220, 1.7, 0.42e9, 0.81e9, 965, 0.10},
-    {"cu", 47.7e9, 2.83e-11, 3.77e-4, 1790, 1.5, 0.12e9, 0.64e9, 36, 0.45},
-    {"ni", 85.5e9, 1.63e-11, 3.26e-4, 2330, 1.4, 0.14e9, 1.20e9, 46, 0.53},
-    {"ti", 43.4e9, 1.15e-11, 6.22e-4, 2260, 1.0, 0.71e9, 1.45e9, 780, 0.065},
-    {"ti-6al-4v", 41.9e9, 1.15e-11, 6.44e-4, 2110, 1.0, 1.33e9, 2.12e9, 12, 0.10},
-    {"ta", 69.0e9, 1.45e-11, 1.30e-4, 4340, 1.3, 0.77e9, 1.10e9, 10, 0.1},
-    {"zn", 39.5e9, 5.95e-11, 7.60e-4, 900, 1.7, 0.15e9, 0.92e9, 100, 0.20}
-};
-
-/* Johnson-Cook; reference rate 1/s, reference temperature 298 K. */
-typedef struct mpm__ptw_set_jc {
-    const char *name;
-    double a, b, n, c, m, melt;  /* Pa, Pa, 1, 1, 1, K */
-} mpm__ptw_set_jc;
-
-static const mpm__ptw_set_jc mpm__ptw_sets_jc[] = {
-    {"al1100", 148.4e6, 345.5e6, 0.183, 0.001, 0.895, 916},  /* [M] */
-    {"al6061-t6", 324e6, 114e6, 0.42, 0.002, 1.34, 925},     /* [JC] */
-    {"cu", 90e6, 292e6, 0.31, 0.025, 1.09, 1356},            /* [JC], OFHC */
-    {"ni", 163e6, 648e6, 0.33, 0.006, 1.44, 1726},           /* [M] */
-    {"ti-6al-4v", 862e6, 331e6, 0.34, 0.012, 0.8, 1878},     /* [M] */
-    {"304", 310e6, 1000e6, 0.65, 0.07, 1.0, 1673},           /* 304L, [JC] form */
-    {"4340", 792e6, 510e6, 0.26, 0.014, 1.03, 1793}          /* [JC] */
-};
-
-/* Preston-Tonks-Wallace with the shear modulus and melting law it is used with. */
-typedef struct mpm__ptw_set_ptw {
-    const char *name;
-    double theta, d, s0, sinf, kappa, gamma, y0, yinf, y1, y2, s1;
-    double atom;                 /* mass of one atom [kg] */
-    mpm_shear shear;             /* MTS: mu0, D [Pa], T0 [K]; SCG: the table above; constant: mu0 */
-    double mu0, mts_d, mts_t;
-    mpm_melt melt;
-    double melt0, melt_a;        /* [K], 1 */
-} mpm__ptw_set_ptw;
-
-static const mpm__ptw_set_ptw mpm__ptw_sets_ptw[] = {
-    /* [A] table 2.1. The table prints 4.48039e-23 kg per atom, which is grams: 26.98 u is
-       4.48039e-26 kg. T_m0: ambient melting point of Al; a: [S]. */
-    {"al", 0.01156, 3, 0.01489, 0.002819, 1.3, 2.04e-5, 0.0115, 0.002003, 0.0168, 0.2339, 0.2034,
-     4.48039e-26, MPM_SHEAR_MTS, 28.8e9, 3.44e9, 215, MPM_MELT_SCG, 933.5, 1.5},
-    /* [PTW]; shear modulus: MTS fit of Cu in use with it; melting [S]; 63.546 u */
-    {"cu", 0.025, 2, 0.0085, 0.00055, 0.11, 1e-5, 1e-4, 1e-4, 0.094, 0.575, 0.25,
-     1.055206e-25, MPM_SHEAR_MTS, 51.3e9, 3.0e9, 165, MPM_MELT_SCG, 1790, 1.5},
-    /* [PTW]; shear modulus and melting [S]; 180.948 u */
-    {"ta", 0.02, 0, 0.012, 0.00325, 0.6, 4e-5, 0.01, 0.00125, 0.012, 0.4, 0.23,
-     3.004712e-25, MPM_SHEAR_SCG, 0, 0, 0, MPM_MELT_SCG, 4340, 1.3},
-    /* [PTW], which prints G0 = 89.5 GPa at T = 0 with a fall towards melting that was not seen; instead
-       the room temperature shear modulus of data sheets, held constant; melting: solidus of 304; the
-       atom is that of iron, 55.845 u */
-    {"304", 0.02, 10, 0.05, 0.0075, 0.3, 1e-3, 0.0069, 0.0015, 0.05, 0.46, 0.25,
-     9.273280e-26, MPM_SHEAR_CONSTANT, 77e9, 0, 0, MPM_MELT_CONSTANT, 1673, 0}
-};
-
-/* Linear isotropic hardening: the Taylor bar benchmark's copper, with its own moduli. */
-typedef struct mpm__ptw_set_linear {
-    const char *name;
-    double yield, hardening, young, poisson;  /* Pa, Pa, Pa, 1 */
-} mpm__ptw_set_linear;
-
-static const mpm__ptw_set_linear mpm__ptw_sets_linear[] = {
-    {"cu", 400e6, 100e6, 117e9, 0.35}
-};
-
-/* The entry of a table whose first member is the name, or NULL. */
-#define MPM__PTW_FIND(type, table, wanted) \
-    ((const type *)mpm__ptw_find(table, sizeof(type), sizeof(table) / sizeof(type), wanted))
-
-static inline const void *mpm__ptw_find(const void *table, size_t size, size_t count, const char *name)
-{
-    const char *entry = (const char *)table;
-    size_t i;
-    for (i = 0; i < count; i++, entry += size)
-        if (!strcmp(*(const char *const *)(const void *)entry, name)) return entry;
-    return NULL;
-}
-
-/* A stress in Pa, in the caller's units. */
-static inline mpm_real mpm__ptw_stress_in(const mpm_units *u, double si)
-{
-    return (mpm_real)(si / mpm_units_stress(u));
-}
-
-/* Constant moduli, linear equation of state, no melting; strength is set by the caller. */
-static inline void mpm__ptw_use_textbook(mpm_material *m, const mpm_units *u, double young, double nu)
-{
-    m->shear = MPM_SHEAR_CONSTANT;
-    m->melt = MPM_MELT_NONE;
-    m->eos = MPM_EOS_LINEAR;
-    m->young = mpm__ptw_stress_in(u, young);
-    m->poisson = (mpm_real)nu;
-    m->shear_modulus = mpm__ptw_stress_in(u, young / (2 * (1 + nu)));
-}
-
-static inline void mpm__ptw_use_shear_scg(mpm_material *m, const mpm_units *u,
-                                          const mpm__ptw_set_scg *t)
-{
-    m->shear = MPM_SHEAR_SCG;
-    m->shear_modulus = mpm__ptw_stress_in(u, t->shear);
-    m->shear_a = (mpm_real)(t->a * mpm_units_stress(u));
-    m->shear_b = (mpm_real)t->b;
-}
-
-static inline void mpm__ptw_use_scg(mpm_material *m, const mpm_units *u, const mpm__ptw_set_scg *t)
-{
-    mpm__ptw_use_shear_scg(m, u, t);
-    m->strength = MPM_STRENGTH_SCG;
-    m->melt = MPM_MELT_SCG;
-    m->melt_temperature = (mpm_real)t->melt;
-    m->melt_a = (mpm_real)t->melt_a;
-    m->scg.y0 = mpm__ptw_stress_in(u, t->y0);
-    m->scg.ymax = mpm__ptw_stress_in(u, t->ymax);
-    m->scg.beta = (mpm_real)t->beta;
-    m->scg.n = (mpm_real)t->n;
-}
-
-static inline void mpm__ptw_use_jc(mpm_material *m, const mpm_units *u, const mpm__ptw_set_jc *t)
-{
-    m->strength = MPM_STRENGTH_JC;
-    m->shear = MPM_SHEAR_CONSTANT;
-    m->shear_modulus = m->young / (2 * (1 + m->poisson));
-    m->melt = MPM_MELT_CONSTANT;
-    m->melt_temperature = (mpm_real)t->melt;
-    m->jc.a = mpm__ptw_stress_in(u, t->a);
-    m->jc.b = mpm__ptw_stress_in(u, t->b);
-    m->jc.n = (mpm_real)t->n;
-    m->jc.c = (mpm_real)t->c;
-    m->jc.m = (mpm_real)t->m;
-    m->jc.rate = (mpm_real)u->time; /* 1/s */
-    m->jc.temperature = 298;
-}
-
-static inline void mpm__ptw_use_ptw(mpm_material *m, const mpm_units *u, const mpm__ptw_set_ptw *t)
-{
-    mpm_ptw *c = &m->ptw;
-    m->strength = MPM_STRENGTH_PTW;
-    if (t->shear == MPM_SHEAR_SCG) {
-        mpm__ptw_use_shear_scg(m, u, MPM__PTW_FIND(mpm__ptw_set_scg, mpm__ptw_sets_scg, t->name));
-    } else {
-        m->shear = t->shear;
-        m->shear_modulus = mpm__ptw_stress_in(u, t->mu0);
-        m->shear_d = mpm__ptw_stress_in(u, t->mts_d);
-        m->shear_t = (mpm_real)t->mts_t;
-    }
-    m->melt = t->melt;
-    m->melt_temperature = (mpm_real)t->melt0;
-    m->melt_a = (mpm_real)t->melt_a;
-    c->theta = (mpm_real)t->theta;
-    c->d = (mpm_real)t->d;
-    c->s0 = (mpm_real)t->s0;
-    c->sinf = (mpm_real)t->sinf;
-    c->kappa = (mpm_real)t->kappa;
-    c->gamma = (mpm_real)t->gamma;
-    c->y0 = (mpm_real)t->y0;
-    c->yinf = (mpm_real)t->yinf;
-    c->y1 = (mpm_real)t->y1;
-    c->y2 = (mpm_real)t->y2;
-    c->s1 = (mpm_real)t->s1;
-    c->atomic_mass = (mpm_real)(t->atom / u->mass);
-}
-
-/* E and nu of a metal [SI]: given, or from K = rho c0^2 and G0 of the SCG table. */
-static inline void mpm__ptw_moduli(const mpm__ptw_metal *t, double *young, double *nu)
+/* Moduli and equation of state of a metal. E = 9 K G/(3 K + G), nu = (3 K - 2 G)/(2 (3 K + G)), with K = rho c0^2 and
+   G0 of the SCG table, where they are not given. */
+static inline void mpm__ptw_use_metal(mpm_material *m, const mpm__ptw_metal *t)
 {
     const mpm__ptw_set_scg *g = MPM__PTW_FIND(mpm__ptw_set_scg, mpm__ptw_sets_scg, t->name);
-    *young = t->young;
-    *nu = t->poisson;
+    double young = t->young, nu = t->poisson;
     if (t->young <= 0 && g) {
         double bulk = t->density * t->sound * t->sound, shear = g->shear;
-        *young = 9 * bulk * shear / (3 * bulk + shear);
-        *nu = (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear));
+        young = 9 * bulk * shear / (3 * bulk + shear);
+        nu = (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear));
     }
+    mpm__ptw_use_textbook(m, young, nu);
+    m->eos = t->sound > 0 ? MPM_EOS_MIE_GRUENEISEN : MPM_EOS_LINEAR;
 }
 
 /* Sets strength, shear modulus, melting and equation of state of a metal. */
-static inline mpm_status mpm__ptw_use(mpm_material *m, const mpm__ptw_metal *t, const char *model,
-                                      mpm_fault *fault)
+static inline mpm_status mpm__ptw_use(mpm_material *m, const mpm__ptw_metal *t, const char *model, mpm_fault *fault)
 {
-    const mpm__ptw_set_linear *linear =
-        MPM__PTW_FIND(mpm__ptw_set_linear, mpm__ptw_sets_linear, t->name);
-    const mpm__ptw_set_jc *jc = MPM__PTW_FIND(mpm__ptw_set_jc, mpm__ptw_sets_jc, t->name);
-    const mpm__ptw_set_scg *scg = MPM__PTW_FIND(mpm__ptw_set_scg, mpm__ptw_sets_scg, t->name);
-    const mpm__ptw_set_ptw *ptw = MPM__PTW_FIND(mpm__ptw_set_ptw, mpm__ptw_sets_ptw, t->name);
-    const mpm_units units = m->units, *u = &units;
+    const mpm__ptw_law *law = mpm__ptw_law_named(model);
     mpm_material next = *m;
-    double young, nu;
-    int known = 1, found = 1;
-    mpm__ptw_moduli(t, &young, &nu);
-    mpm__ptw_use_textbook(&next, u, young, nu);
-    next.eos = t->sound > 0 ? MPM_EOS_MIE_GRUENEISEN : MPM_EOS_LINEAR;
-    if (!strcmp(model, "elastic")) {
-        next.strength = MPM_STRENGTH_ELASTIC;
-        next.eos = MPM_EOS_LINEAR;
-    } else if (!strcmp(model, "linear")) {
-        if ((found = linear != NULL)) {
-            mpm__ptw_use_textbook(&next, u, linear->young, linear->poisson);
-            next.strength = MPM_STRENGTH_LINEAR;
-            next.linear_yield = mpm__ptw_stress_in(u, linear->yield);
-            next.linear_hardening = mpm__ptw_stress_in(u, linear->hardening);
-        }
-    } else if (!strcmp(model, "jc")) {
-        if ((found = jc != NULL)) mpm__ptw_use_jc(&next, u, jc);
-    } else if (!strcmp(model, "scg")) {
-        if ((found = scg != NULL)) mpm__ptw_use_scg(&next, u, scg);
-    } else if (!strcmp(model, "ptw")) {
-        if ((found = ptw != NULL)) mpm__ptw_use_ptw(&next, u, ptw);
-    } else {
-        known = 0;
-    }
-    if (!known) return mpm_fail(fault, MPM_ERR_UNKNOWN, "model", 0, -1);
-    if (!found) return mpm_fail(fault, MPM_ERR_UNKNOWN, "model of material", 0, -1);
+    if (!law) return mpm_fail(fault, MPM_ERR_UNKNOWN, "model", 0, -1);
+    mpm__ptw_use_metal(&next, t);
+    next.strength = law->strength;
+    if (!law->preset || !law->preset(&next, t->name))
+        return mpm_fail(fault, MPM_ERR_UNKNOWN, "model of material", 0, -1);
     *m = next;
     return MPM_OK;
 }
@@ -1764,61 +1897,6 @@ MPM_API const char *mpm_material_preset_name(int i)
 }
 
 /* ---- the check ----------------------------------------------------------------------------- */
-
-static inline mpm_status mpm__ptw_check_ptw(const mpm_ptw *c, mpm_fault *fault)
-{
-    const mpm_real big = mpm__ptw_infinity();
-    MPM__PTW_REQUIRE(mpm__ptw_positive("ptw.theta", c->theta, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.d", c->d, 0, big, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_positive("ptw.s0", c->s0, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.sinf", c->sinf, 0, c->s0, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.y0", c->y0, 0, c->s0, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.yinf", c->yinf, 0, mpm__ptw_min(c->y0, c->sinf), fault));
-    MPM__PTW_REQUIRE(mpm__ptw_positive("ptw.y1", c->y1, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.y2", c->y2, 0, big, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.s1", c->s1, 0, big, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_within("ptw.kappa", c->kappa, 0, big, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_positive("ptw.gamma", c->gamma, fault));
-    return mpm__ptw_positive("ptw.atomic_mass", c->atomic_mass, fault);
-}
-
-static inline mpm_status mpm__ptw_check_jc(const mpm_material *m, mpm_fault *fault)
-{
-    const mpm_jc *c = &m->jc;
-    const mpm_real big = mpm__ptw_infinity();
-    MPM__PTW_REQUIRE(mpm__ptw_within("jc.a", c->a, 0, big, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_within("jc.b", c->b, 0, big, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_within("jc.n", c->n, 0, big, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_within("jc.c", c->c, 0, big, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_positive("jc.m", c->m, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_positive("jc.rate", c->rate, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_within("jc.temperature", c->temperature, 0, big, fault));
-    if (m->melt != MPM_MELT_NONE && !(m->melt_temperature > c->temperature))
-        return mpm_fail(fault, MPM_ERR_ARGUMENT, "melt_temperature", m->melt_temperature, -1);
-    return MPM_OK;
-}
-
-static inline mpm_status mpm__ptw_check_strength(const mpm_material *m, mpm_fault *fault)
-{
-    const mpm_real big = mpm__ptw_infinity();
-    switch (m->strength) {
-    case MPM_STRENGTH_LINEAR:
-        MPM__PTW_REQUIRE(mpm__ptw_within("linear_yield", m->linear_yield, 0, big, fault));
-        return mpm__ptw_within("linear_hardening", m->linear_hardening, -m->shear_modulus, big, fault);
-    case MPM_STRENGTH_SCG:
-        MPM__PTW_REQUIRE(mpm__ptw_within("scg.y0", m->scg.y0, 0, big, fault));
-        MPM__PTW_REQUIRE(mpm__ptw_within("scg.ymax", m->scg.ymax, 0, big, fault));
-        MPM__PTW_REQUIRE(mpm__ptw_within("scg.beta", m->scg.beta, 0, big, fault));
-        return mpm__ptw_within("scg.n", m->scg.n, 0, big, fault);
-    case MPM_STRENGTH_JC: return mpm__ptw_check_jc(m, fault);
-    case MPM_STRENGTH_PTW: return mpm__ptw_check_ptw(&m->ptw, fault);
-    case MPM_STRENGTH_USER:
-        if (!m->strength_fn) return mpm_fail(fault, MPM_ERR_ARGUMENT, "strength_fn", 0, -1);
-        return MPM_OK;
-    case MPM_STRENGTH_ELASTIC: return MPM_OK;
-    }
-    return mpm_fail(fault, MPM_ERR_ARGUMENT, "strength", (mpm_real)m->strength, -1);
-}
 
 static inline mpm_status mpm__ptw_check_shear(const mpm_material *m, mpm_fault *fault)
 {
@@ -1890,7 +1968,7 @@ MPM_API mpm_status mpm_material_check(const mpm_material *m, mpm_fault *fault)
     MPM__PTW_REQUIRE(mpm__ptw_within("viscosity_quadratic", m->viscosity_quadratic, 0, big, fault));
     MPM__PTW_REQUIRE(mpm__ptw_check_shear(m, fault));
     MPM__PTW_REQUIRE(mpm__ptw_check_melt_and_eos(m, fault));
-    return mpm__ptw_check_strength(m, fault);
+    return mpm__ptw_law_of(m->strength)->check(m, fault);
 }
 
 #ifdef __cplusplus

@@ -17,20 +17,27 @@ static int refuse(const char *what, const char *name)
     return 1;
 }
 
-/* Every material, with the models it has a published set for. */
+/* Every material with the models it has a published set for, then what the models are. */
 static int list(void)
 {
-    static const char *const models[] = {"elastic", "linear", "jc", "scg", "ptw"};
+#define NAME_AND_TEXT(strength, name, text) {name, text},
+    static const char *const models[][2] = {MPM_STRENGTH_LIST(NAME_AND_TEXT)};
+    enum { MODELS = (int)(sizeof models / sizeof models[0]) };
     const mpm_units si = mpm_units_si();
-    int i, j;
+    int i, j, sets[MODELS] = {0};
     for (i = 0; i < mpm_material_preset_count(); i++) {
         mpm_material m;
         if (mpm_material_preset(&m, mpm_material_preset_name(i), &si, NULL) < 0) return 1;
         printf("%-10s", m.name);
-        for (j = 0; j < 5; j++)
-            if (mpm_material_model(&m, models[j], NULL) == MPM_OK) printf(" %s", models[j]);
+        for (j = 0; j < MODELS; j++)
+            if (mpm_material_model(&m, models[j][0], NULL) == MPM_OK) {
+                printf(" %s", models[j][0]);
+                sets[j]++;
+            }
         printf("\n");
     }
+    for (j = 0; j < MODELS; j++)
+        if (sets[j]) printf("%s: %s\n", models[j][0], models[j][1]);
     return 0;
 }
 
@@ -83,7 +90,7 @@ int main(int argc, char **argv)
     int show_list = 0, status;
     const option options[] = {
         {"material", OPTION_TEXT, &name, "preset"},
-        {"model", OPTION_TEXT, &model, "elastic, linear, jc, scg or ptw; empty: the preset's own"},
+        {"model", OPTION_TEXT, &model, "see --list; empty: the preset's own"},
         {"strain", OPTION_REAL, &strain, "effective plastic strain"},
         {"rate", OPTION_REAL, &rate, "effective plastic strain rate, 1/s"},
         {"temperature", OPTION_REAL, &temperature, "K"},

@@ -438,6 +438,48 @@ static void test_check(void)
     CHECK_TRUE("ta has y1 = s0, and passes", m.ptw.y1 == m.ptw.s0 && mpm_material_check(&m, &f) == MPM_OK);
 }
 
+/* A choice outside its list, and a material that was never filled, are refused by name. */
+static void test_choices(void)
+{
+    static const char *const fields[] = {"strength", "shear", "melt", "eos", "mapping", "rotation"};
+    mpm_material m[6], zero;
+    mpm_fault f = no_fault;
+    int i;
+    for (i = 0; i < 6; i++) m[i] = preset("al", "ptw");
+    m[0].strength = (mpm_strength)7;
+    m[1].shear = (mpm_shear)3;
+    m[2].melt = (mpm_melt)3;
+    m[3].eos = (mpm_eos)3;
+    m[4].mapping = (mpm_return_mapping)2;
+    m[5].rotation = (mpm_rotation)2;
+    for (i = 0; i < 6; i++) {
+        CHECK_EQUAL(fields[i], mpm_material_check(&m[i], &f), MPM_ERR_ARGUMENT);
+        CHECK_TRUE("... named", !strcmp(f.field, fields[i]));
+    }
+    memset(&zero, 0, sizeof zero);
+    CHECK_EQUAL("a zeroed material", mpm_material_check(&zero, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... named", !strcmp(f.field, "material (not from mpm_material_default)"));
+    f = no_fault;
+    CHECK_EQUAL("... has no model either", mpm_material_model(&zero, "jc", &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... named", !strcmp(f.field, "material (not from mpm_material_default)"));
+    zero = mpm_material_default();
+    CHECK_EQUAL("one without a name", mpm_material_model(&zero, "jc", &f), MPM_ERR_UNKNOWN);
+    CHECK_TRUE("... is no metal", !strcmp(f.field, "material"));
+}
+
+/* The names of the lists, in the order of their enums. */
+static void test_lists(void)
+{
+    CHECK_TRUE("strengths", !strcmp(MPM_NAMES(MPM_STRENGTH_LIST), "elastic|linear|jc|scg|ptw|user"));
+    CHECK_TRUE("shear moduli", !strcmp(MPM_NAMES(MPM_SHEAR_LIST), "constant|mts|scg"));
+    CHECK_TRUE("melting laws", !strcmp(MPM_NAMES(MPM_MELT_LIST), "none|constant|scg"));
+    CHECK_TRUE("equations of state", !strcmp(MPM_NAMES(MPM_EOS_LIST), "linear|mie-grueneisen"));
+    CHECK_TRUE("return mappings", !strcmp(MPM_NAMES(MPM_RETURN_LIST), "consistent|staged"));
+    CHECK_TRUE("rotations", !strcmp(MPM_NAMES(MPM_ROTATION_LIST), "proper|jaumann"));
+    CHECK_EQUAL("the default is the first of each", MPM_STRENGTH_ELASTIC + MPM_SHEAR_CONSTANT + MPM_MELT_NONE +
+                MPM_EOS_LINEAR + MPM_RETURN_CONSISTENT + MPM_ROTATION_PROPER, 0);
+}
+
 int main(void)
 {
     test_flow_stress_against_long_double();
@@ -453,5 +495,7 @@ int main(void)
     test_waves();
     test_presets();
     test_check();
+    test_choices();
+    test_lists();
     return check_end();
 }

@@ -568,6 +568,9 @@ static void test_faults(void)
     CHECK_EQUAL("... index within the block", f.index, 100);
     p.energy[100] = 0;
     CHECK_EQUAL("and all is well again", update(&p, &m, 0, MOST, 1e-9, NULL), MPM_OK);
+    memset(&m, 0, sizeof m);
+    CHECK_EQUAL("a zeroed material", update(&p, &m, 0, 1, 1e-9, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... named", !strcmp(f.field, "material (not from mpm_material_default)"));
 }
 
 /* A flow stress of the caller's: constant, or NaN on request. */

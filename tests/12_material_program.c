@@ -72,7 +72,9 @@ int main(void)
     CHECK_NEAR("... without pressure", printed("pressure_MPa"), 0, 0);
     CHECK_EQUAL("list", run("--list"), 0);
     for (at = out; (at = strchr(at, '\n')) != NULL; at++) lines++;
-    CHECK_EQUAL("... one line per preset", lines, mpm_material_preset_count());
+    CHECK_EQUAL("... one line per preset and per model", lines, mpm_material_preset_count() + 5);
+    CHECK_TRUE("... the models of cu", strstr(out, "\ncu         elastic linear jc scg ptw\n") != NULL);
+    CHECK_TRUE("... what a model is", strstr(out, "\njc: Johnson-Cook\n") != NULL);
     curve();
     refused("--material cheese", "cheese");
     refused("--model magic", "magic");

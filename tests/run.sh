@@ -1,6 +1,6 @@
 #!/bin/sh
-# Runs the test programs given before "--", then the compile tests with the compiler given behind it,
-# and closes with one count over all of them.
+# Runs the test programs given before "--", then with the compiler given behind it the compile tests, the index of
+# equations (tags) and the programs of comments and pages; closes with one count over all of them.
 set -u
 passed=0
 failed=0
@@ -24,9 +24,13 @@ while [ $# -gt 0 ] && [ "$1" != "--" ]; do
     shift
 done
 [ $# -gt 0 ] && shift
-sh tests/compile/run.sh "${1:-cc}" >build/tests/compile.log 2>&1
-count build/tests/compile.log
-printf '%-32s %s\n' compile "$(tail -n 1 build/tests/compile.log)"
-grep -E '^(not ok|skip)' build/tests/compile.log
+for script in compile/run tags programs; do
+    name=${script%/run}
+    log=build/tests/$name.log
+    sh "tests/$script.sh" "${1:-cc}" >"$log" 2>&1
+    count "$log"
+    printf '%-32s %s\n' "$name" "$(tail -n 1 "$log")"
+    grep -E '^(not ok|skip)' "$log"
+done
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

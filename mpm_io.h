@@ -33,7 +33,7 @@
        }
 
    CONTENTS
-     messages      mpm_io_status_text, mpm_io_fault_text, mpm_io_number_text, mpm_io_progress_text
+     messages      mpm_io_fault_text, mpm_io_number_text, mpm_io_progress_text
      folders       mpm_io_make_directory
      text files    mpm_io_json_*, mpm_io_csv_*
      ParaView      mpm_io_scalar .. mpm_io_int32, mpm_io_vtu, mpm_io_body_numbers, mpm_io_pvd_begin, mpm_io_pvd_add
@@ -53,9 +53,11 @@
 
 #include <stdio.h>
 #include "mpm.h"
+#if MPM_VERSION_NUMBER != 200
+#error "mpm_io.h 0.2.0 needs mpm.h 0.2.0"
+#endif
 
 #ifdef MPM_FLOAT
-#define mpm_io_status_text mpm_io_status_text_f32
 #define mpm_io_fault_text mpm_io_fault_text_f32
 #define mpm_io_number_text mpm_io_number_text_f32
 #define mpm_io_progress_text mpm_io_progress_text_f32
@@ -101,10 +103,6 @@ extern "C" {
 #endif
 
 /* ---- messages ------------------------------------------------------------------------------ */
-
-/* The meaning of a status, as listed in MPM_STATUS_LIST; "unknown status" for any other number.
-   Test: 40_io.c "messages". */
-MPM_API const char *mpm_io_status_text(mpm_status status);
 
 /* Writes "meaning: field = value (index 12)" into buffer[n], cut to fit and always terminated when
    n > 0. The index (a point, a body or an axis: the field's name says which) is left out when
@@ -294,12 +292,9 @@ MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int
 #endif
 #endif /* MPM_IO_H - stop here if you only want the API */
 
-/* ============================================================================================
-   IMPLEMENTATION
-   ============================================================================================ */
-#if defined(MPM_IMPLEMENTATION) || defined(MPM_IO_IMPLEMENTATION)
-#ifndef MPM_IO_IMPLEMENTED
-#define MPM_IO_IMPLEMENTED
+/* ============================================================================================ */
+#if defined(MPM_IMPLEMENTATION) && !defined(MPM__IO_IMPLEMENTED)
+#define MPM__IO_IMPLEMENTED
 
 #include <stdlib.h>
 #include <string.h>
@@ -322,36 +317,11 @@ static inline int mpm__io_mkdir(const char *path)
 #define MPM__IO_MKDIR(path) ((void)(path), 0)
 #endif
 
-#ifndef MPM_MALLOC
-#define MPM_MALLOC(n) malloc(n)
-#define MPM_FREE(p) free(p)
-#endif
-
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* ---- messages ------------------------------------------------------------------------------ */
-
-static inline mpm_status mpm__io_fail(mpm_fault *fault, mpm_status status, const char *field,
-                                      double value, long number)
-{
-    if (fault) {
-        fault->status = status;
-        fault->field = field;
-        fault->value = (mpm_real)value;
-        fault->index = number;
-    }
-    return status;
-}
-
-/* Copies text to the end of buffer[n], which holds `used` characters; returns the new length. */
-static inline size_t mpm__io_append(char *buffer, size_t n, size_t used, const char *text)
-{
-    while (*text && used + 1 < n) buffer[used++] = *text++;
-    if (n) buffer[used] = 0;
-    return used;
-}
 
 /* Puts a point where the locale put its decimal separator, whatever its bytes: between the digits
    of a printed number there is nothing else. */
@@ -371,8 +341,8 @@ static inline size_t mpm__io_print(char *buffer, size_t n, double value, int mos
 {
     char text[64];
     int digits;
-    if (value != value) return mpm__io_append(buffer, n, 0, "nan");
-    if (value - value != 0) return mpm__io_append(buffer, n, 0, value > 0 ? "inf" : "-inf");
+    if (value != value) return mpm_append(buffer, n, 0, "nan");
+    if (value - value != 0) return mpm_append(buffer, n, 0, value > 0 ? "inf" : "-inf");
     for (digits = most - (single ? 3 : 2); digits <= most; digits++) {
         double back;
         snprintf(text, sizeof text, "%.*g", digits, value);
@@ -380,7 +350,7 @@ static inline size_t mpm__io_print(char *buffer, size_t n, double value, int mos
         if (single ? (float)back == (float)value : back >= value && back <= value) break;
     }
     mpm__io_decimal_point(text);
-    return mpm__io_append(buffer, n, 0, text);
+    return mpm_append(buffer, n, 0, text);
 }
 
 MPM_API size_t mpm_io_number_text(char *buffer, size_t n, double value)
@@ -405,35 +375,25 @@ static inline void mpm__io_short(char *buffer, size_t n, double value, int digit
         long power = strtol(e + 1, NULL, 10);
         snprintf(e + 1, sizeof text - (size_t)(e + 1 - text), "%ld", power);
     }
-    mpm__io_append(buffer, n, 0, text);
-}
-
-MPM_API const char *mpm_io_status_text(mpm_status status)
-{
-    switch ((int)status) {
-#define MPM__IO_STATUS_CASE(name, number, text) case number: return text;
-        MPM_STATUS_LIST(MPM__IO_STATUS_CASE)
-#undef MPM__IO_STATUS_CASE
-    default: return "unknown status";
-    }
+    mpm_append(buffer, n, 0, text);
 }
 
 MPM_API size_t mpm_io_fault_text(char *buffer, size_t n, const mpm_fault *fault)
 {
     char number[40];
-    size_t used = mpm__io_append(buffer, n, 0, mpm_io_status_text(fault->status));
+    size_t used = mpm_append(buffer, n, 0, mpm_status_text(fault->status));
     if (fault->field) {
-        used = mpm__io_append(buffer, n, used, ": ");
-        used = mpm__io_append(buffer, n, used, fault->field);
+        used = mpm_append(buffer, n, used, ": ");
+        used = mpm_append(buffer, n, used, fault->field);
         if (fault->status != MPM_ERR_FILE) {
             mpm__io_print_real(number, sizeof number, fault->value);
-            used = mpm__io_append(buffer, n, used, " = ");
-            used = mpm__io_append(buffer, n, used, number);
+            used = mpm_append(buffer, n, used, " = ");
+            used = mpm_append(buffer, n, used, number);
         }
     }
     if (fault->index >= 0) {
         snprintf(number, sizeof number, " (index %ld)", fault->index);
-        used = mpm__io_append(buffer, n, used, number);
+        used = mpm_append(buffer, n, used, number);
     }
     return used;
 }
@@ -453,19 +413,19 @@ MPM_API size_t mpm_io_progress_text(char *buffer, size_t n, const mpm_io_progres
     size_t used;
     snprintf(text, sizeof text, "step %ld/%ld  %ld %%", p->step, p->steps,
              p->steps > 0 ? (long)(100.0 * (double)p->step / (double)p->steps) : 0L);
-    used = mpm__io_append(buffer, n, 0, text);
+    used = mpm_append(buffer, n, 0, text);
     if (p->time_unit) {
         mpm__io_short(number, sizeof number, p->time, 4);
         snprintf(text, sizeof text, "  t = %.24s %.24s", number, p->time_unit);
-        used = mpm__io_append(buffer, n, used, text);
+        used = mpm_append(buffer, n, used, text);
     }
     if (done > 0 && p->elapsed > 0) {
         mpm__io_short(number, sizeof number, p->points * done / p->elapsed, 2);
         snprintf(text, sizeof text, "  %.32s points/s", number);
-        used = mpm__io_append(buffer, n, used, text);
+        used = mpm_append(buffer, n, used, text);
         mpm__io_clock(number, sizeof number, p->elapsed * (double)(p->steps - p->step) / done);
         snprintf(text, sizeof text, "  left %.32s", number);
-        used = mpm__io_append(buffer, n, used, text);
+        used = mpm_append(buffer, n, used, text);
     }
     return used;
 }
@@ -477,13 +437,13 @@ MPM_API mpm_status mpm_io_make_directory(const char *path, mpm_fault *fault)
     char part[MPM_IO_PATH];
     size_t i, length = path ? strlen(path) : 0;
     if (length == 0 || length >= sizeof part)
-        return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "length of folder path", (double)length, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "length of folder path", (mpm_real)length, -1);
     for (i = 1; i <= length; i++) {
         if (path[i] != 0 && path[i] != '/' && path[i] != '\\') continue;
         memcpy(part, path, i);
         part[i] = 0;
         if (part[i - 1] == ':') continue; /* a drive, "C:" */
-        if (!MPM__IO_MKDIR(part)) return mpm__io_fail(fault, MPM_ERR_FILE, "folder path", 0, -1);
+        if (!MPM__IO_MKDIR(part)) return mpm_fail(fault, MPM_ERR_FILE, "folder path", 0, -1);
     }
     return MPM_OK;
 }
@@ -491,8 +451,8 @@ MPM_API mpm_status mpm_io_make_directory(const char *path, mpm_fault *fault)
 /* The name a file has until it is complete. */
 static inline void mpm__io_part_name(char part[MPM_IO_PATH + 8], const char *path)
 {
-    size_t used = mpm__io_append(part, MPM_IO_PATH + 8, 0, path);
-    mpm__io_append(part, MPM_IO_PATH + 8, used, ".part");
+    size_t used = mpm_append(part, MPM_IO_PATH + 8, 0, path);
+    mpm_append(part, MPM_IO_PATH + 8, used, ".part");
 }
 
 static inline mpm_status mpm__io_open(mpm_io_file *f, const char *path, mpm_fault *fault)
@@ -502,11 +462,11 @@ static inline mpm_status mpm__io_open(mpm_io_file *f, const char *path, mpm_faul
     f->stream = NULL;
     f->path[0] = 0;
     if (length == 0 || length >= MPM_IO_PATH)
-        return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "length of path", (double)length, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "length of path", (mpm_real)length, -1);
     memcpy(f->path, path, length + 1);
     mpm__io_part_name(part, path);
     f->stream = fopen(part, "wb");
-    return f->stream ? MPM_OK : mpm__io_fail(fault, MPM_ERR_FILE, "path: cannot be made", 0, -1);
+    return f->stream ? MPM_OK : mpm_fail(fault, MPM_ERR_FILE, "path: cannot be made", 0, -1);
 }
 
 /* Closes the file and, if `keep` and every write went well, gives it its final name. */
@@ -514,7 +474,7 @@ static inline mpm_status mpm__io_close(mpm_io_file *f, int keep, mpm_fault *faul
 {
     char part[MPM_IO_PATH + 8];
     int good;
-    if (!f->stream) return mpm__io_fail(fault, MPM_ERR_FILE, "path: not open", 0, -1);
+    if (!f->stream) return mpm_fail(fault, MPM_ERR_FILE, "path: not open", 0, -1);
     mpm__io_part_name(part, f->path);
     good = fflush(f->stream) == 0 && !ferror(f->stream);
     good = fclose(f->stream) == 0 && good;
@@ -525,8 +485,7 @@ static inline mpm_status mpm__io_close(mpm_io_file *f, int keep, mpm_fault *faul
     if (keep && good && rename(part, f->path) == 0) return MPM_OK;
     remove(part);
     if (!keep) return MPM_OK;
-    return mpm__io_fail(fault, MPM_ERR_FILE,
-                        good ? "path: cannot be renamed" : "path: writing failed", 0, -1);
+    return mpm_fail(fault, MPM_ERR_FILE, good ? "path: cannot be renamed" : "path: writing failed", 0, -1);
 }
 
 static inline void mpm__io_put(mpm_io_file *f, const char *text)
@@ -647,7 +606,7 @@ MPM_API mpm_status mpm_io_json_end(mpm_io_json *j, mpm_fault *fault)
 {
     if (j->file.stream && (j->status < 0 || j->depth != 1)) {
         mpm__io_close(&j->file, 0, NULL);
-        return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "depth of json object", j->depth, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "depth of json object", (mpm_real)j->depth, -1);
     }
     mpm__io_put(&j->file, "\n}\n");
     return mpm__io_close(&j->file, 1, fault);
@@ -715,7 +674,7 @@ MPM_API mpm_status mpm_io_csv_end(mpm_io_csv *t, mpm_fault *fault)
 {
     if (t->file.stream && t->cells != 0) {
         mpm__io_close(&t->file, 0, NULL);
-        return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "cells in the last row", t->cells, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "cells in the last row", (mpm_real)t->cells, -1);
     }
     return mpm__io_close(&t->file, 1, fault);
 }
@@ -857,18 +816,18 @@ static inline mpm_status mpm__io_vtu_check(const mpm_io_vtu_desc *d, mpm_fault *
 {
     int i, k;
     if (d->count > 2147483647u)
-        return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "count", (double)d->count, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "count", (mpm_real)d->count, -1);
     if (d->field_count < 0 || (d->field_count > 0 && !d->fields))
-        return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "field_count", d->field_count, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "field_count", (mpm_real)d->field_count, -1);
     for (i = 0; i < d->field_count; i++) {
         const mpm_io_field *f = &d->fields[i];
-        if (!f->name) return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "name of field", 0, i);
+        if (!f->name) return mpm_fail(fault, MPM_ERR_ARGUMENT, "name of field", 0, i);
         if (f->components < 1 || f->components > 9)
-            return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "components of field", f->components, i);
+            return mpm_fail(fault, MPM_ERR_ARGUMENT, "components of field", (mpm_real)f->components, i);
         if ((f->bytes || f->integers) && f->components != 1)
-            return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "components of field", f->components, i);
+            return mpm_fail(fault, MPM_ERR_ARGUMENT, "components of field", (mpm_real)f->components, i);
         for (k = 0; k < f->components && !f->bytes && !f->integers && d->count > 0; k++)
-            if (!f->data[k]) return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "data of field", k, i);
+            if (!f->data[k]) return mpm_fail(fault, MPM_ERR_ARGUMENT, "data of field", (mpm_real)k, i);
     }
     return MPM_OK;
 }
@@ -1005,12 +964,12 @@ MPM_API mpm_status mpm_io_pvd_add(const char *path, const char *frame, double ti
     size_t used;
     mpm_status status;
     if (!frame || frame[0] == 0 || strlen(frame) >= MPM_IO_PATH || strpbrk(frame, "<>&\"'\n"))
-        return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "name of frame", 0, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "name of frame", 0, -1);
     status = mpm__io_open(&f, path, fault);
     if (status < 0) return status;
-    used = mpm__io_append(ending, sizeof ending, 0, "file=\"");
-    used = mpm__io_append(ending, sizeof ending, used, frame);
-    mpm__io_append(ending, sizeof ending, used, "\"/>\n");
+    used = mpm_append(ending, sizeof ending, 0, "file=\"");
+    used = mpm_append(ending, sizeof ending, used, frame);
+    mpm_append(ending, sizeof ending, used, "\"/>\n");
     mpm__io_put(&f, MPM__IO_PVD_HEAD);
     old = fopen(path, "rb");
     if (old) {
@@ -1018,7 +977,7 @@ MPM_API mpm_status mpm_io_pvd_add(const char *path, const char *frame, double ti
         fclose(old);
         if (!good) {
             mpm__io_close(&f, 0, NULL);
-            return mpm__io_fail(fault, MPM_ERR_FILE, "path: not a series of ours", 0, -1);
+            return mpm_fail(fault, MPM_ERR_FILE, "path: not a series of ours", 0, -1);
         }
     }
     mpm__io_put(&f, "    <DataSet timestep=\"");
@@ -1082,8 +1041,8 @@ static inline mpm__io_stamp mpm__io_stamp_make(int count)
 {
     mpm__io_stamp s;
     memset(&s, 0, sizeof s);
-    mpm__io_append(s.magic, sizeof s.magic, 0, "mpm checkpoint");
-    mpm__io_append(s.version, sizeof s.version, 0, MPM_VERSION);
+    mpm_append(s.magic, sizeof s.magic, 0, "mpm checkpoint");
+    mpm_append(s.version, sizeof s.version, 0, MPM_VERSION);
     s.order = 0x01020304;
     s.real_size = (uint32_t)sizeof(mpm_real);
     s.count = (uint32_t)count;
@@ -1095,7 +1054,7 @@ static inline mpm__io_blob_head mpm__io_blob_head_make(const mpm_io_blob *b)
 {
     mpm__io_blob_head h;
     memset(&h, 0, sizeof h);
-    mpm__io_append(h.name, sizeof h.name, 0, b->name);
+    mpm_append(h.name, sizeof h.name, 0, b->name);
     h.bytes = b->bytes;
     return h;
 }
@@ -1104,12 +1063,12 @@ static inline mpm_status mpm__io_blobs_check(const mpm_io_blob *blobs, int count
 {
     int i;
     if (count < 0 || (count > 0 && !blobs))
-        return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "count of blobs", count, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "count of blobs", (mpm_real)count, -1);
     for (i = 0; i < count; i++) {
         if (!blobs[i].name || strlen(blobs[i].name) >= 64)
-            return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "name of blob", 0, i);
+            return mpm_fail(fault, MPM_ERR_ARGUMENT, "name of blob", 0, i);
         if (!blobs[i].data && blobs[i].bytes > 0)
-            return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "data of blob", 0, i);
+            return mpm_fail(fault, MPM_ERR_ARGUMENT, "data of blob", 0, i);
     }
     return MPM_OK;
 }
@@ -1163,31 +1122,31 @@ static inline mpm_status mpm__io_checkpoint_verify(FILE *in, const mpm_io_blob *
     uint32_t crc, stored;
     int i;
     if (fread(&found, sizeof found, 1, in) != 1 || memcmp(found.magic, mine.magic, 16) != 0)
-        return mpm__io_fail(fault, MPM_ERR_FILE, "path: not a checkpoint", 0, -1);
+        return mpm_fail(fault, MPM_ERR_FILE, "path: not a checkpoint", 0, -1);
     if (memcmp(found.version, mine.version, 16) != 0)
-        return mpm__io_fail(fault, MPM_ERR_VERSION, "version of checkpoint", 0, -1);
+        return mpm_fail(fault, MPM_ERR_VERSION, "version of checkpoint", 0, -1);
     if (found.order != mine.order)
-        return mpm__io_fail(fault, MPM_ERR_VERSION, "byte order of checkpoint", 0, -1);
+        return mpm_fail(fault, MPM_ERR_VERSION, "byte order of checkpoint", 0, -1);
     if (found.real_size != mine.real_size)
-        return mpm__io_fail(fault, MPM_ERR_VERSION, "real size of checkpoint", found.real_size, -1);
+        return mpm_fail(fault, MPM_ERR_VERSION, "real size of checkpoint", (mpm_real)found.real_size, -1);
     if (found.size_size != mine.size_size)
-        return mpm__io_fail(fault, MPM_ERR_VERSION, "word size of checkpoint", found.size_size, -1);
+        return mpm_fail(fault, MPM_ERR_VERSION, "word size of checkpoint", (mpm_real)found.size_size, -1);
     if (found.count != mine.count)
-        return mpm__io_fail(fault, MPM_ERR_FILE, "count of blobs differs", found.count, -1);
+        return mpm_fail(fault, MPM_ERR_FILE, "count of blobs differs", (mpm_real)found.count, -1);
     crc = mpm__io_crc(0, &found, sizeof found);
     for (i = 0; i < count; i++) {
         mpm__io_blob_head head, want = mpm__io_blob_head_make(&blobs[i]);
         if (fread(&head, sizeof head, 1, in) != 1)
-            return mpm__io_fail(fault, MPM_ERR_FILE, "checkpoint ends early", 0, i);
+            return mpm_fail(fault, MPM_ERR_FILE, "checkpoint ends early", 0, i);
         if (memcmp(head.name, want.name, sizeof head.name) != 0 || head.bytes != want.bytes)
-            return mpm__io_fail(fault, MPM_ERR_FILE, "name or size of blob differs", 0, i);
+            return mpm_fail(fault, MPM_ERR_FILE, "name or size of blob differs", 0, i);
         crc = mpm__io_crc(crc, &head, sizeof head);
         if (!mpm__io_skip_summed(in, blobs[i].bytes, &crc))
-            return mpm__io_fail(fault, MPM_ERR_FILE, "checkpoint ends early", 0, i);
+            return mpm_fail(fault, MPM_ERR_FILE, "checkpoint ends early", 0, i);
     }
     if (fread(&stored, sizeof stored, 1, in) != 1 || fgetc(in) != EOF)
-        return mpm__io_fail(fault, MPM_ERR_FILE, "length of checkpoint", 0, -1);
-    if (stored != crc) return mpm__io_fail(fault, MPM_ERR_FILE, "checksum of checkpoint", 0, -1);
+        return mpm_fail(fault, MPM_ERR_FILE, "length of checkpoint", 0, -1);
+    if (stored != crc) return mpm_fail(fault, MPM_ERR_FILE, "checksum of checkpoint", 0, -1);
     return MPM_OK;
 }
 
@@ -1199,7 +1158,7 @@ MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const mpm_io_blob *b
     mpm_status status = mpm__io_blobs_check(blobs, count, fault);
     if (status < 0) return status;
     in = path ? fopen(path, "rb") : NULL;
-    if (!in) return mpm__io_fail(fault, MPM_ERR_FILE, "path: cannot be read", 0, -1);
+    if (!in) return mpm_fail(fault, MPM_ERR_FILE, "path: cannot be read", 0, -1);
     status = mpm__io_checkpoint_verify(in, blobs, count, fault);
     if (status == MPM_OK) {
         good = fseek(in, (long)sizeof(mpm__io_stamp), SEEK_SET) == 0;
@@ -1210,7 +1169,7 @@ MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const mpm_io_blob *b
         }
     }
     fclose(in);
-    if (!good) return mpm__io_fail(fault, MPM_ERR_FILE, "path: reading failed", 0, -1);
+    if (!good) return mpm_fail(fault, MPM_ERR_FILE, "path: reading failed", 0, -1);
     return status;
 }
 
@@ -1584,7 +1543,7 @@ static inline void mpm__io_png_text(mpm_io_file *f, const char *keyword, const c
     char body[1000];
     size_t key = strlen(keyword) + 1;
     memcpy(body, keyword, key);
-    mpm__io_png_chunk(f, "tEXt", body, key + mpm__io_append(body + key, 900, 0, text));
+    mpm__io_png_chunk(f, "tEXt", body, key + mpm_append(body + key, 900, 0, text));
 }
 
 /* The chunks of a picture whose filtered rows, width * 3 + 1 bytes each, stand behind z. */
@@ -1611,16 +1570,16 @@ MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int
     mpm__io_zip *z;
     mpm_status status;
     if (!pixels || width < 1 || width > 16384)
-        return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "width of picture", width, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "width of picture", (mpm_real)width, -1);
     if (height < 1 || height > 16384)
-        return mpm__io_fail(fault, MPM_ERR_ARGUMENT, "height of picture", height, -1);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "height of picture", (mpm_real)height, -1);
     status = mpm__io_open(&f, path, fault);
     if (status < 0) return status;
     bytes = sizeof *z + ((size_t)width * 3 + 1) * (size_t)height;
     z = (mpm__io_zip *)MPM_MALLOC(bytes);
     if (!z) {
         mpm__io_close(&f, 0, NULL);
-        return mpm__io_fail(fault, MPM_ERR_MEMORY, "bytes for picture", (double)bytes, -1);
+        return mpm_fail(fault, MPM_ERR_MEMORY, "bytes for picture", (mpm_real)bytes, -1);
     }
     memset(z, 0, sizeof *z);
     z->file = &f;
@@ -1633,8 +1592,7 @@ MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int
 #ifdef __cplusplus
 }
 #endif
-#endif /* MPM_IO_IMPLEMENTED */
-#endif /* MPM_IMPLEMENTATION || MPM_IO_IMPLEMENTATION */
+#endif /* MPM_IMPLEMENTATION */
 
 /* References: PNG Specification, W3C; RFC 1950 and 1951 for zlib and deflate; the XML formats of
    the VTK file format documentation.

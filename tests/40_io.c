@@ -78,8 +78,8 @@ static void test_messages(void)
     char text[160];
     mpm_fault f = {MPM_ERR_ARGUMENT, "spacing", MPM_R(-0.5), 12};
     mpm_io_progress p = {1200, 0, 9900, 9.7, "ns", 5900, 5.9};
-    holds("status text", strcmp(mpm_io_status_text(MPM_OK), "done") == 0);
-    holds("unknown status", strcmp(mpm_io_status_text((mpm_status)99), "unknown status") == 0);
+    holds("status text", strcmp(mpm_status_text(MPM_OK), "done") == 0);
+    holds("unknown status", strcmp(mpm_status_text((mpm_status)99), "unknown status") == 0);
     mpm_io_fault_text(text, sizeof text, &f);
     holds("fault text", strcmp(text, "an argument is out of its valid range: spacing = -0.5 "
                                           "(index 12)") == 0);

@@ -203,7 +203,7 @@ static inline void calibration_collect(const calibration *q, const study *s, cal
             side->bonded += side->map.bonds[k];
         }
         side->status = mpm_bond_logistic_fit(&side->fit, x1, x2, outcome, side->tests, q->ridge, 200, NULL);
-        side->why = mpm_io_status_text(side->status);
+        side->why = mpm_status_text(side->status);
         if (side->bonded == 0 || side->bonded == side->tests) side->why = "one class only";
         if (side->tests < 6) side->why = "fewer than six runs";
     }

@@ -9,6 +9,7 @@
 #define MPM_IMPLEMENTATION
 #include "mpm.h"
 #include "mpm_bond.h"
+#include "mpm_draw.h"
 #include "mpm_io.h"
 #include "mpm_measure.h"
 #include "mpm_ptw.h"

@@ -248,6 +248,15 @@ static inline void *mpm_carve(char *base, size_t *used, size_t n, size_t size)
     return base ? base + at : NULL;
 }
 
+/* Copies text to the end of buffer[n], which holds `used` characters, cut to fit and always terminated when n > 0.
+   Returns the new length. */
+static inline size_t mpm_append(char *buffer, size_t n, size_t used, const char *text)
+{
+    while (*text && used + 1 < n) buffer[used++] = *text++;
+    if (n) buffer[used] = 0;
+    return used;
+}
+
 /* ---- units --------------------------------------------------------------------------------- */
 
 /* A consistent unit system: the SI value of one unit of each base quantity. Temperature is K. */

@@ -1,12 +1,12 @@
 /* mpm_spray.h - the spray: powder carried from a nozzle to a target, colliding, sticking, piling up.
-   Version 0.1.0. SPDX-License-Identifier: MIT
+   Version 0.2.0. SPDX-License-Identifier: MIT
 
    DO THIS
      In ONE source file:                          everywhere else:
        #define MPM_IMPLEMENTATION                   #include "mpm_spray.h"
        #include "mpm_spray.h"
-     (MPM_SPRAY_IMPLEMENTATION gives this header's functions alone.) Describe the spray, give it
-     memory (mpm_spray_init), call mpm_spray_step until the time is up, measure. Link with -lm.
+     Describe the spray, give it memory (mpm_spray_init), call mpm_spray_step until the time is up,
+     measure. Link with -lm.
 
    WHAT IT DOES NOT DO
      No action of the particles on the gas, no turbulence, no stagnation of the gas at the target,
@@ -61,6 +61,9 @@
 #define MPM_SPRAY_H
 
 #include "mpm.h"
+#if MPM_VERSION_NUMBER != 200
+#error "mpm_spray.h 0.2.0 needs mpm.h 0.2.0"
+#endif
 
 #ifdef MPM_FLOAT
 #define mpm_spray_desc_default mpm_spray_desc_default_f32
@@ -514,23 +517,16 @@ MPM_API mpm_real mpm_spray_size(mpm_real u, mpm_real scale, mpm_real shape, mpm_
 #endif /* MPM_SPRAY_H - stop here if you only want the API */
 
 /* ============================================================================================ */
-#if (defined(MPM_IMPLEMENTATION) || defined(MPM_SPRAY_IMPLEMENTATION)) && !defined(MPM__SPRAY_IMPLEMENTED)
+#if defined(MPM_IMPLEMENTATION) && !defined(MPM__SPRAY_IMPLEMENTED)
 #define MPM__SPRAY_IMPLEMENTED
 
 #include <math.h>
 #include <string.h>
 
-#ifndef MPM_MALLOC
-#include <stdlib.h>
-#define MPM_MALLOC(n) malloc(n)
-#define MPM_FREE(p) free(p)
-#endif
-
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-#define MPM__SPRAY_PI MPM_R(3.14159265358979323846)
 #define MPM__SPRAY_NEVER MPM_R(1e30)  /* later than any contact */
 #define MPM__SPRAY_TRIES 1000         /* places tried for one particle at the inlet */
 
@@ -539,13 +535,13 @@ enum { MPM__SPRAY_NOTHING, MPM__SPRAY_PLANE, MPM__SPRAY_DEPOSIT, MPM__SPRAY_PAIR
 
 /* ---- small tools --------------------------------------------------------------------------- */
 
+/* Not those of mpm.h: with floats too these compute in double and round once. */
 static inline mpm_real mpm__spray_sqrt(mpm_real a) { return (mpm_real)sqrt((double)a); }
 static inline mpm_real mpm__spray_exp(mpm_real a) { return (mpm_real)exp((double)a); }
 static inline mpm_real mpm__spray_pow(mpm_real a, mpm_real b) { return (mpm_real)pow((double)a, (double)b); }
 static inline mpm_real mpm__spray_cbrt(mpm_real a) { return (mpm_real)cbrt((double)a); }
 static inline mpm_real mpm__spray_max(mpm_real a, mpm_real b) { return a > b ? a : b; }
 static inline mpm_real mpm__spray_min(mpm_real a, mpm_real b) { return a < b ? a : b; }
-static inline int mpm__spray_finite(mpm_real a) { return a - a == 0; } /* false for inf and nan */
 
 static inline mpm_real mpm__spray_dot(const mpm_real *a, const mpm_real *b)
 {
@@ -564,19 +560,7 @@ static inline void mpm__spray_add_cross(mpm_real *c, mpm_real f, const mpm_real 
 
 static inline mpm_real mpm__spray_mass(mpm_real radius, mpm_real density)
 {
-    return 4 * MPM__SPRAY_PI / 3 * density * radius * radius * radius;
-}
-
-static inline mpm_status mpm__spray_fail(mpm_fault *f, mpm_status status, const char *field, mpm_real value,
-                                         long index)
-{
-    if (f) {
-        f->status = status;
-        f->field = field;
-        f->value = value;
-        f->index = index;
-    }
-    return status;
+    return 4 * MPM_PI / 3 * density * radius * radius * radius;
 }
 
 /* ---- contact models ------------------------------------------------------------------------ */
@@ -611,7 +595,7 @@ MPM_API mpm_real mpm_spray_elastic_time(mpm_real speed, mpm_real mass, mpm_real 
 
 MPM_API mpm_real mpm_spray_compression_time(mpm_real mass, mpm_real radius, mpm_real yield)
 {
-    return mpm__spray_sqrt(MPM__SPRAY_PI * mass / (24 * radius * yield));
+    return mpm__spray_sqrt(MPM_PI * mass / (24 * radius * yield));
 }
 
 MPM_API mpm_real mpm_spray_gamma12(mpm_spray_mixing rule, mpm_real gamma1, mpm_real gamma2)
@@ -623,7 +607,7 @@ MPM_API mpm_real mpm_spray_gamma12(mpm_spray_mixing rule, mpm_real gamma1, mpm_r
 MPM_API mpm_real mpm_spray_stick_speed(mpm_real alpha, mpm_real gamma, mpm_real mass, mpm_real radius,
                                        mpm_real yield)
 {
-    mpm_real force = 4 * MPM__SPRAY_PI * gamma * radius;
+    mpm_real force = 4 * MPM_PI * gamma * radius;
     return MPM_R(0.2) * alpha * (force * mpm_spray_compression_time(mass, radius, yield) / mass);
 }
 
@@ -892,13 +876,11 @@ static inline mpm__spray_rule mpm__spray_rule_of(const char *field, mpm_real val
 
 static inline mpm_status mpm__spray_judge(const mpm__spray_rule *rule, int count, mpm_fault *f)
 {
+    mpm_status status = MPM_OK;
     int i;
-    for (i = 0; i < count; i++) {
-        if (!mpm__spray_finite(rule[i].value))
-            return mpm__spray_fail(f, MPM_ERR_NAN, rule[i].field, rule[i].value, -1);
-        if (!rule[i].ok) return mpm__spray_fail(f, MPM_ERR_ARGUMENT, rule[i].field, rule[i].value, -1);
-    }
-    return MPM_OK;
+    for (i = 0; i < count && status == MPM_OK; i++)
+        status = mpm_want(rule[i].ok, f, rule[i].field, rule[i].value, -1);
+    return status;
 }
 
 static inline mpm_status mpm__spray_check_solid(const mpm_spray_solid *s, mpm_fault *f)
@@ -953,7 +935,7 @@ static inline mpm_status mpm__spray_check_contact(const mpm_spray_desc *d, mpm_f
     mpm__spray_rule r[9];
     int n = 0;
     if (!(d->alpha >= 0)) /* may be infinite, so not judged with the rest */
-        return mpm__spray_fail(f, d->alpha < 0 ? MPM_ERR_ARGUMENT : MPM_ERR_NAN, "alpha", d->alpha, -1);
+        return mpm_fail(f, d->alpha < 0 ? MPM_ERR_ARGUMENT : MPM_ERR_NAN, "alpha", d->alpha, -1);
     r[n++] = mpm__spray_rule_of("friction", d->friction, d->friction >= 0);
     r[n++] = mpm__spray_rule_of("friction_speed", d->friction_speed, d->friction_speed > 0);
     r[n++] = mpm__spray_rule_of("restitution", d->restitution, d->restitution >= 0 && d->restitution <= 1);
@@ -1045,56 +1027,44 @@ static inline uint32_t mpm__spray_slots(int32_t n)
     return slots;
 }
 
-/* The next array of count * size bytes: its place in base (NULL: only count), advancing *at. */
-static inline void *mpm__spray_take(char *base, size_t *at, size_t count, size_t size)
-{
-    size_t begin = *at, room = (size_t)-1 - 15 - begin;
-    if (*at == (size_t)-1 || count > room / size) {
-        *at = (size_t)-1;
-        return NULL;
-    }
-    *at = begin + (count * size + 15) / 16 * 16;
-    return base ? base + begin : NULL;
-}
-
 /* Points the arrays into base and returns their bytes; with base NULL only counts. */
 static inline size_t mpm__spray_layout(mpm_spray *s, char *base)
 {
     size_t at = 0, n = (size_t)s->desc.capacity, slots = mpm__spray_slots(s->desc.capacity);
     const size_t real = sizeof(mpm_real), i32 = sizeof(int32_t), i64 = sizeof(int64_t);
-    s->x = (mpm_real *)mpm__spray_take(base, &at, 3 * n, real);
-    s->v = (mpm_real *)mpm__spray_take(base, &at, 3 * n, real);
-    s->spin = (mpm_real *)mpm__spray_take(base, &at, 3 * n, real);
-    s->radius = (mpm_real *)mpm__spray_take(base, &at, n, real);
-    s->density = (mpm_real *)mpm__spray_take(base, &at, n, real);
-    s->id = (int64_t *)mpm__spray_take(base, &at, n, i64);
-    s->collisions = (int32_t *)mpm__spray_take(base, &at, n, i32);
-    s->touches = (int32_t *)mpm__spray_take(base, &at, n, i32);
-    s->drag = (mpm_real *)mpm__spray_take(base, &at, 3 * n, real);
-    s->known = (int32_t *)mpm__spray_take(base, &at, n, i32);
-    s->deposit_x = (mpm_real *)mpm__spray_take(base, &at, 3 * n, real);
-    s->deposit_radius = (mpm_real *)mpm__spray_take(base, &at, n, real);
-    s->deposit_time = (mpm_real *)mpm__spray_take(base, &at, n, real);
-    s->deposit_id = (int64_t *)mpm__spray_take(base, &at, n, i64);
-    s->deposit_collisions = (int32_t *)mpm__spray_take(base, &at, n, i32);
-    s->path = (mpm_real *)mpm__spray_take(base, &at, 3 * n, real);
-    s->middle = (mpm_real *)mpm__spray_take(base, &at, 3 * n, real);
-    s->clock = (mpm_real *)mpm__spray_take(base, &at, n, real);
-    s->when = (mpm_real *)mpm__spray_take(base, &at, n, real);
-    s->kind = (int32_t *)mpm__spray_take(base, &at, n, i32);
-    s->with = (int32_t *)mpm__spray_take(base, &at, n, i32);
-    s->stamp = (int32_t *)mpm__spray_take(base, &at, n, i32);
-    s->with_stamp = (int32_t *)mpm__spray_take(base, &at, n, i32);
-    s->heap = (int32_t *)mpm__spray_take(base, &at, n, i32);
-    s->slot = (int32_t *)mpm__spray_take(base, &at, n, i32);
-    s->gone = (int32_t *)mpm__spray_take(base, &at, n, i32);
-    s->list = (int32_t *)mpm__spray_take(base, &at, n, i32);
-    s->bins.head = (int32_t *)mpm__spray_take(base, &at, slots, i32);
-    s->bins.next = (int32_t *)mpm__spray_take(base, &at, n, i32);
-    s->bins.where = (int32_t *)mpm__spray_take(base, &at, 3 * n, i32);
-    s->deposit_bins.head = (int32_t *)mpm__spray_take(base, &at, slots, i32);
-    s->deposit_bins.next = (int32_t *)mpm__spray_take(base, &at, n, i32);
-    s->deposit_bins.where = (int32_t *)mpm__spray_take(base, &at, 3 * n, i32);
+    s->x = (mpm_real *)mpm_carve(base, &at, 3 * n, real);
+    s->v = (mpm_real *)mpm_carve(base, &at, 3 * n, real);
+    s->spin = (mpm_real *)mpm_carve(base, &at, 3 * n, real);
+    s->radius = (mpm_real *)mpm_carve(base, &at, n, real);
+    s->density = (mpm_real *)mpm_carve(base, &at, n, real);
+    s->id = (int64_t *)mpm_carve(base, &at, n, i64);
+    s->collisions = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->touches = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->drag = (mpm_real *)mpm_carve(base, &at, 3 * n, real);
+    s->known = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->deposit_x = (mpm_real *)mpm_carve(base, &at, 3 * n, real);
+    s->deposit_radius = (mpm_real *)mpm_carve(base, &at, n, real);
+    s->deposit_time = (mpm_real *)mpm_carve(base, &at, n, real);
+    s->deposit_id = (int64_t *)mpm_carve(base, &at, n, i64);
+    s->deposit_collisions = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->path = (mpm_real *)mpm_carve(base, &at, 3 * n, real);
+    s->middle = (mpm_real *)mpm_carve(base, &at, 3 * n, real);
+    s->clock = (mpm_real *)mpm_carve(base, &at, n, real);
+    s->when = (mpm_real *)mpm_carve(base, &at, n, real);
+    s->kind = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->with = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->stamp = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->with_stamp = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->heap = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->slot = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->gone = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->list = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->bins.head = (int32_t *)mpm_carve(base, &at, slots, i32);
+    s->bins.next = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->bins.where = (int32_t *)mpm_carve(base, &at, 3 * n, i32);
+    s->deposit_bins.head = (int32_t *)mpm_carve(base, &at, slots, i32);
+    s->deposit_bins.next = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->deposit_bins.where = (int32_t *)mpm_carve(base, &at, 3 * n, i32);
     return at;
 }
 
@@ -1223,11 +1193,11 @@ MPM_API mpm_status mpm_spray_init(mpm_spray *s, const mpm_spray_desc *d, void *m
     s->desc = *d;
     need = mpm__spray_layout(s, NULL);
     if (need == (size_t)-1 || (memory && bytes < need))
-        return mpm__spray_fail(&s->fault, MPM_ERR_MEMORY, memory ? "bytes" : "capacity",
+        return mpm_fail(&s->fault, MPM_ERR_MEMORY, memory ? "bytes" : "capacity",
                                memory ? (mpm_real)bytes : (mpm_real)d->capacity, -1);
     s->memory = memory ? memory : MPM_MALLOC(need);
     s->owns_memory = !memory;
-    if (!s->memory) return mpm__spray_fail(&s->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)need, -1);
+    if (!s->memory) return mpm_fail(&s->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)need, -1);
     s->bytes = need;
     memset(s->memory, 0, need);
     mpm__spray_layout(s, (char *)s->memory);
@@ -1281,7 +1251,7 @@ MPM_API mpm_status mpm_spray_add(mpm_spray *s, const mpm_spray_ball *ball)
     int32_t i = s->live;
     if (status != MPM_OK) return status;
     if (s->live + s->deposited >= s->desc.capacity) /* so that the deposit can never overflow */
-        return mpm__spray_fail(&s->fault, MPM_ERR_FULL, "capacity", (mpm_real)s->desc.capacity, -1);
+        return mpm_fail(&s->fault, MPM_ERR_FULL, "capacity", (mpm_real)s->desc.capacity, -1);
     mpm__spray_put(s, i, ball);
     s->id[i] = s->tally.injected++;
     s->collisions[i] = s->touches[i] = 0;
@@ -1321,7 +1291,7 @@ static inline void mpm__spray_draw(mpm_spray *s)
 static inline void mpm__spray_place(mpm_spray *s, mpm_spray_ball *b)
 {
     mpm_real r = (s->desc.nozzle_radius - b->radius) * mpm__spray_sqrt(mpm_spray_random(&s->tally.random));
-    double angle = 2 * (double)MPM__SPRAY_PI * (double)mpm_spray_random(&s->tally.random);
+    double angle = 2 * (double)MPM_PI * (double)mpm_spray_random(&s->tally.random);
     b->x[0] = 0;
     b->x[1] = r * (mpm_real)cos(angle);
     b->x[2] = r * (mpm_real)sin(angle);
@@ -1490,8 +1460,8 @@ MPM_API mpm_status mpm_spray_fly(mpm_spray *s)
             s->path[3 * i + k] = (to.x[k] - from.x[k]) * per_step;
             s->v[3 * i + k] = to.v[k];
         }
-        if (!mpm__spray_finite(sum))
-            return mpm__spray_fail(&s->fault, MPM_ERR_NAN, "velocity of particle", sum, (long)s->id[i]);
+        if (!mpm_finite(sum))
+            return mpm_fail(&s->fault, MPM_ERR_NAN, "velocity of particle", sum, (long)s->id[i]);
     }
     s->tally.particle_steps += s->live;
     return result;
@@ -1876,7 +1846,7 @@ static inline int mpm__spray_sticks(const mpm_spray *s, const mpm_spray_touch *t
     if (t->host >= 0 && s->desc.deposit == MPM_SPRAY_DEPOSIT_ALWAYS) return 1;
     if (t->host >= 0 && s->desc.deposit == MPM_SPRAY_DEPOSIT_BOUNCE) return 0;
     if (s->desc.stick) return s->desc.stick(s->desc.stick_user, t) != 0;
-    if (!mpm__spray_finite(t->alpha)) return 1; /* also where gamma is 0 */
+    if (!mpm_finite(t->alpha)) return 1; /* also where gamma is 0 */
     return mpm_spray_stick_adhesion(NULL, t);
 }
 
@@ -2077,14 +2047,14 @@ static inline void mpm__spray_on_target(const mpm_spray *s, int32_t i, double *d
 
 static inline double mpm__spray_volume(mpm_real radius)
 {
-    return 4 * (double)MPM__SPRAY_PI / 3 * (double)radius * (double)radius * (double)radius;
+    return 4 * (double)MPM_PI / 3 * (double)radius * (double)radius * (double)radius;
 }
 
 /* Mean, scatter, thickness and volumes of the deposit (5.2). */
 static inline void mpm__spray_measure_deposit(const mpm_spray *s, mpm_spray_metrics *m)
 {
     double low = 0, high = 0, m2 = 0, inside = 0, r, h;
-    double pellet = (double)MPM__SPRAY_PI * (double)s->desc.target_radius * (double)s->desc.target_radius *
+    double pellet = (double)MPM_PI * (double)s->desc.target_radius * (double)s->desc.target_radius *
                     (double)s->desc.target_thickness;
     int32_t i;
     for (i = 0; i < s->deposited; i++) {
@@ -2218,15 +2188,15 @@ static inline mpm_status mpm__spray_check_head(mpm_spray *s, const mpm__spray_he
     int k;
     mpm__spray_magic(magic);
     if (memcmp(magic, head->magic, sizeof magic) || head->real != (int64_t)sizeof(mpm_real))
-        return mpm__spray_fail(&s->fault, MPM_ERR_VERSION, "saved state", (mpm_real)head->real, -1);
+        return mpm_fail(&s->fault, MPM_ERR_VERSION, "saved state", (mpm_real)head->real, -1);
     if (head->live < 0 || head->deposited < 0 || head->live > s->desc.capacity ||
         head->deposited > s->desc.capacity || head->live + head->deposited > s->desc.capacity)
-        return mpm__spray_fail(&s->fault, MPM_ERR_FULL, "particles of saved state", (mpm_real)head->live, -1);
+        return mpm_fail(&s->fault, MPM_ERR_FULL, "particles of saved state", (mpm_real)head->live, -1);
     if (head->planes != s->planes)
-        return mpm__spray_fail(&s->fault, MPM_ERR_VERSION, "planes of saved state", (mpm_real)head->planes, -1);
+        return mpm_fail(&s->fault, MPM_ERR_VERSION, "planes of saved state", (mpm_real)head->planes, -1);
     mpm__spray_arrays(s, (size_t)head->live, (size_t)head->deposited, array, size);
     for (k = 0; k < MPM__SPRAY_ARRAYS; k++) need += size[k];
-    if (bytes < need) return mpm__spray_fail(&s->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
+    if (bytes < need) return mpm_fail(&s->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
     return MPM_OK;
 }
 
@@ -2239,7 +2209,7 @@ MPM_API mpm_status mpm_spray_load(mpm_spray *s, const void *buffer, size_t bytes
     mpm_status status;
     int32_t i;
     int k;
-    if (bytes < sizeof head) return mpm__spray_fail(&s->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
+    if (bytes < sizeof head) return mpm_fail(&s->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
     memcpy(&head, buffer, sizeof head);
     if ((status = mpm__spray_check_head(s, &head, bytes)) != MPM_OK) return status;
     s->live = (int32_t)head.live;

@@ -202,7 +202,7 @@ static inline int impact_metal(mpm_material *m, const impact_case *c, int body, 
     mpm_status status = mpm_material_preset(m, name, &units, NULL);
     if (status != MPM_OK) {
         snprintf(message, n, "--%smaterial %s: %s (build/material --list shows them)", other ? "substrate-" : "", name,
-                 mpm_io_status_text(status));
+                 mpm_status_text(status));
         return 0;
     }
     if (strcmp(c->model, "preset") && mpm_material_model(m, c->model, NULL) != MPM_OK) {

@@ -5,6 +5,7 @@
 
 #include "case.h"
 #include "mpm.h"
+#include "mpm_draw.h"
 #include "program.h"
 
 #include <time.h>
@@ -90,7 +91,7 @@ static inline int output_due(const output *o, const mpm_world *w, long steps)
 
 /* Two cuts of the whole cross-section. Do not copy: the cuts point to the texts. */
 typedef struct output_picture {
-    mpm_io_cut_desc cut[2];
+    mpm_draw_cut_desc cut[2];
     char title[160], time[32];
 } output_picture;
 
@@ -103,7 +104,7 @@ static inline void output_cuts(const output *o, const mpm_world *w, double spaci
     int i;
     snprintf(p->time, sizeof p->time, "t = %.1f %s", (double)w->time * 1e3, o->time);
     for (i = 0; i < 2; i++) {
-        p->cut[i] = mpm_io_cut_of(w, i ? second : w->points.plastic_strain);
+        p->cut[i] = mpm_draw_cut_of(w, i ? second : w->points.plastic_strain);
         p->cut[i].at = w->desc.geometry == MPM_3D && w->desc.side[2] == MPM_SIDE_SYMMETRY ? spacing / 2 : 0;
         p->cut[i].mirror = w->desc.side[0] == MPM_SIDE_SYMMETRY;
         p->cut[i].length_unit = o->length;
@@ -130,7 +131,7 @@ static inline void output_window(output_picture *p, double edge, double bottom, 
 static inline void output_heat(output_picture *p, double low, double high)
 {
     p->cut[1].label = "temperature (K)";
-    p->cut[1].map = MPM_IO_HEAT;
+    p->cut[1].map = MPM_DRAW_HEAT;
     p->cut[1].low = low;
     p->cut[1].high = high;
 }
@@ -139,8 +140,14 @@ static inline int output_png(output *o, const output_picture *p, const char *nam
 {
     const clock_t mark = clock();
     char path[MPM_IO_PATH];
+    mpm_draw_canvas c;
     mpm_fault fault;
-    int ok = mpm_io_cut_png(file_in(o->folder, name, path, sizeof path), p->cut, 2, 2, 800, &fault) >= 0;
+    int ok = mpm_draw_cuts(&c, p->cut, 2, 2, 800, &fault) >= 0;
+    file_in(o->folder, name, path, sizeof path);
+    if (ok) {
+        ok = mpm_io_png(path, c.rgb, c.width, c.height, p->title, &fault) >= 0;
+        mpm_draw_canvas_free(&c);
+    }
     o->writing += clock() - mark;
     return ok || report(&fault, path);
 }

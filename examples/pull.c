@@ -16,6 +16,7 @@
    The loop in draw() is the method with a grip in it. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "impact_options.h"
+#include "mpm_draw.h"
 #include "program.h"
 
 /* What to do after the impact. */
@@ -100,10 +101,10 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
 static int write_picture(const impact *s, const impact_case *c, const pull_case *o, const mpm_pull *p, const curve *k)
 {
     const mpm_world *w = &s->world;
-    mpm_io_cut_desc cut = mpm_io_cut_of(w, w->points.plastic_strain);
-    mpm_io_plot_desc plot = mpm_io_plot_desc_default();
-    mpm_io_curve line;
-    mpm_io_canvas canvas;
+    mpm_draw_cut_desc cut = mpm_draw_cut_of(w, w->points.plastic_strain);
+    mpm_draw_plot_desc plot = mpm_draw_plot_desc_default();
+    mpm_draw_curve line;
+    mpm_draw_canvas canvas;
     mpm_fault fault;
     char path[1024], title[96], note[96];
     const double edge = 1.1 * c->substrate_diameter / 2;
@@ -125,19 +126,19 @@ static int write_picture(const impact *s, const impact_case *c, const pull_case 
     line.count = k->count;
     line.x = k->separation;
     line.y = k->stress;
-    line.mark = MPM_IO_CURVE;
+    line.mark = MPM_DRAW_CURVE;
     line.color = 0;
     plot.curves = &line;
     plot.curve_count = 1;
     plot.title = "nominal stress";
     plot.x_label = "way of the grip (um)";
     plot.y_label = "stress (MPa)";
-    if (mpm_io_canvas_init(&canvas, 1500, 700, NULL, 0) != MPM_OK) return complain("no memory for the picture");
+    if (mpm_draw_canvas_init(&canvas, 1500, 700, NULL, 0) != MPM_OK) return complain("no memory for the picture");
     file_in(o->folder, "pull.png", path, sizeof path);
-    ok = mpm_io_cut(&canvas, mpm_io_tile(&canvas, 2, 1, 0), &cut, &fault) >= 0 &&
-         (k->count < 2 || mpm_io_plot(&canvas, mpm_io_tile(&canvas, 2, 1, 1), &plot, &fault) >= 0) &&
-         mpm_io_png(path, &canvas, "mpm.h examples/pull", &fault) >= 0;
-    mpm_io_canvas_free(&canvas);
+    ok = mpm_draw_cut(&canvas, mpm_draw_tile(&canvas, 2, 1, 0), &cut, &fault) >= 0 &&
+         (k->count < 2 || mpm_draw_plot(&canvas, mpm_draw_tile(&canvas, 2, 1, 1), &plot, &fault) >= 0) &&
+         mpm_io_png(path, canvas.rgb, canvas.width, canvas.height, "mpm.h examples/pull", &fault) >= 0;
+    mpm_draw_canvas_free(&canvas);
     return ok || report(&fault, path);
 }
 

@@ -319,22 +319,22 @@ static mpm_status write_pictures(const char *folder, const mpm_spray *s, spray_c
                                  mpm_fault *fault)
 {
     char path[MPM_IO_PATH];
-    mpm_io_canvas canvas;
+    mpm_draw_canvas canvas;
     mpm_status status = MPM_OK;
     if (s->live + s->deposited > 0) {
-        if ((status = mpm_io_canvas_init(&canvas, 1500, 640, NULL, 0)) < 0) return status;
-        status = spray_draw_plume(&canvas, mpm_io_tile(&canvas, 1, 1, 0), s, c, (double)s->desc.gas_speed,
+        if ((status = mpm_draw_canvas_init(&canvas, 1500, 640, NULL, 0)) < 0) return status;
+        status = spray_draw_plume(&canvas, mpm_draw_tile(&canvas, 1, 1, 0), s, c, (double)s->desc.gas_speed,
                                   "plume, from the side", fault);
         snprintf(path, sizeof path, "%s/plume.png", folder);
-        if (status >= 0) status = mpm_io_png(path, &canvas, note, fault);
-        mpm_io_canvas_free(&canvas);
+        if (status >= 0) status = mpm_io_png(path, canvas.rgb, canvas.width, canvas.height, note, fault);
+        mpm_draw_canvas_free(&canvas);
     }
     if (s->deposited > 0 && status >= 0) {
-        if ((status = mpm_io_canvas_init(&canvas, 1100, 1200, NULL, 0)) < 0) return status;
-        status = spray_draw_deposit(&canvas, mpm_io_tile(&canvas, 1, 1, 0), s, c, 25, "deposit, from above", fault);
+        if ((status = mpm_draw_canvas_init(&canvas, 1100, 1200, NULL, 0)) < 0) return status;
+        status = spray_draw_deposit(&canvas, mpm_draw_tile(&canvas, 1, 1, 0), s, c, 25, "deposit, from above", fault);
         snprintf(path, sizeof path, "%s/deposit.png", folder);
-        if (status >= 0) status = mpm_io_png(path, &canvas, note, fault);
-        mpm_io_canvas_free(&canvas);
+        if (status >= 0) status = mpm_io_png(path, canvas.rgb, canvas.width, canvas.height, note, fault);
+        mpm_draw_canvas_free(&canvas);
     }
     return status;
 }

@@ -3,7 +3,7 @@
 #ifndef SPRAY_VIEW_H
 #define SPRAY_VIEW_H
 
-#include "mpm_io.h"
+#include "mpm_draw.h"
 #include "mpm_spray.h"
 
 #include <stdlib.h>
@@ -38,10 +38,10 @@ static inline mpm_real spray_speed(const mpm_spray *s, int32_t i)
 }
 
 /* The plume: along the jet to the right, y upwards [mm], coloured by speed up to `fastest`. */
-static inline mpm_status spray_draw_plume(mpm_io_canvas *canvas, mpm_io_rect where, const mpm_spray *s,
+static inline mpm_status spray_draw_plume(mpm_draw_canvas *canvas, mpm_draw_rect where, const mpm_spray *s,
                                           spray_columns *c, double fastest, const char *title, mpm_fault *fault)
 {
-    mpm_io_scatter_desc d = mpm_io_scatter_desc_default();
+    mpm_draw_scatter_desc d = mpm_draw_scatter_desc_default();
     int32_t i, n = 0;
     for (i = 0; i < s->live; i++, n++) {
         c->column[0][n] = s->x[3 * i] * 1000;
@@ -64,20 +64,20 @@ static inline mpm_status spray_draw_plume(mpm_io_canvas *canvas, mpm_io_rect whe
     d.window[3] = (double)s->desc.high[1] * 1000;
     d.low = 0;
     d.high = fastest;
-    d.map = MPM_IO_DEEP;
+    d.map = MPM_DRAW_DEEP;
     d.label = "speed, m/s";
     d.title = title;
     d.x_label = "x, mm";
     d.y_label = "y, mm";
-    return mpm_io_scatter(canvas, where, &d, fault);
+    return mpm_draw_scatter(canvas, where, &d, fault);
 }
 
 /* The deposit: y to the right, z upwards [mm], every particle at its true size, coloured by the
    time of its arrival [ms]; `half` is half the window [mm]. */
-static inline mpm_status spray_draw_deposit(mpm_io_canvas *canvas, mpm_io_rect where, const mpm_spray *s,
+static inline mpm_status spray_draw_deposit(mpm_draw_canvas *canvas, mpm_draw_rect where, const mpm_spray *s,
                                             spray_columns *c, double half, const char *title, mpm_fault *fault)
 {
-    mpm_io_scatter_desc d = mpm_io_scatter_desc_default();
+    mpm_draw_scatter_desc d = mpm_draw_scatter_desc_default();
     int32_t i;
     for (i = 0; i < s->deposited; i++) {
         c->column[0][i] = s->deposit_x[3 * i + 1] * 1000;
@@ -94,12 +94,12 @@ static inline mpm_status spray_draw_deposit(mpm_io_canvas *canvas, mpm_io_rect w
     d.window[1] = d.window[3] = half;
     d.low = 0;
     d.high = (double)mpm_spray_time(s) * 1000;
-    d.map = MPM_IO_HEAT;
+    d.map = MPM_DRAW_HEAT;
     d.label = "arrival, ms";
     d.title = title;
     d.x_label = "y, mm";
     d.y_label = "z, mm";
-    return mpm_io_scatter(canvas, where, &d, fault);
+    return mpm_draw_scatter(canvas, where, &d, fault);
 }
 
 #endif

@@ -88,7 +88,7 @@ static inline int taylor_material(mpm_material *material, const taylor_case *c, 
     mpm_fault fault;
     if (mpm_material_preset(material, c->material, &units, &fault) != MPM_OK) {
         snprintf(message, n, "--material %s: %s (build/material --list shows them)", c->material,
-                 mpm_io_status_text(MPM_ERR_UNKNOWN));
+                 mpm_status_text(MPM_ERR_UNKNOWN));
         return 0;
     }
     if (!case_knows("elastic|linear|jc|scg|ptw", "model", c->model, message, n)) return 0;

@@ -1,4 +1,4 @@
-/* 40_io - files and pictures: what is written comes back bit for bit through readers of our own,
+/* 40_io - files: what is written comes back bit for bit through readers of our own,
    and a file that cannot be written leaves no trace. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "mpm_io.h"
@@ -6,6 +6,7 @@
 #include <locale.h>
 
 #include "check.h"
+#include "png.h"
 
 #ifdef MPM_FLOAT
 #define FOLDER "build/test-io-f32"
@@ -19,23 +20,6 @@ static void holds(const char *what, int condition) { CHECK_TRUE(what, condition)
 
 /* ---- reading back ---------------------------------------------------------------------------- */
 
-/* The whole of a file in fresh memory, with a zero behind; NULL when it is not there. */
-static unsigned char *slurp(const char *path, size_t *n)
-{
-    FILE *in = fopen(path, "rb");
-    unsigned char *data;
-    size_t room = (size_t)1 << 24;
-    *n = 0;
-    if (!in) return NULL;
-    data = (unsigned char *)malloc(room);
-    if (data) {
-        *n = fread(data, 1, room - 1, in);
-        data[*n] = 0;
-    }
-    fclose(in);
-    return data;
-}
-
 static int exists(const char *path)
 {
     FILE *in = fopen(path, "rb");
@@ -48,6 +32,17 @@ static int contains(const char *path, const char *text)
     size_t n;
     unsigned char *data = slurp(path, &n);
     int found = data && strstr((const char *)data, text) != NULL;
+    free(data);
+    return found;
+}
+
+/* The same for bytes with zeros among them. */
+static int slurp_holds(const char *path, const char *bytes, size_t length)
+{
+    size_t n, i;
+    unsigned char *data = slurp(path, &n);
+    int found = 0;
+    for (i = 0; data && i + length <= n && !found; i++) found = memcmp(data + i, bytes, length) == 0;
     free(data);
     return found;
 }
@@ -76,195 +71,6 @@ static uint32_t random_next(void)
     return random_state >> 8;
 }
 
-/* ---- an inflate and a PNG reader that share nothing with the writer ------------------------- */
-
-typedef struct inflater {
-    const unsigned char *in;
-    size_t n, bit;
-} inflater;
-
-static unsigned take(inflater *z, int count)
-{
-    unsigned value = 0;
-    int k;
-    for (k = 0; k < count; k++, z->bit++)
-        if (z->bit / 8 < z->n) value |= (unsigned)(z->in[z->bit / 8] >> z->bit % 8 & 1) << k;
-    return value;
-}
-
-/* Decodes one symbol by comparing with the codes of each length in turn. */
-static int symbol(inflater *z, const unsigned char *length, int n)
-{
-    int code = 0, first = 0, bits, i;
-    for (bits = 1; bits < 16; bits++) {
-        int count = 0, seen = 0;
-        code = code << 1 | (int)take(z, 1);
-        first <<= 1;
-        for (i = 0; i < n; i++) count += length[i] == bits;
-        if (code - first < count) {
-            for (i = 0; i < n; i++)
-                if (length[i] == bits && seen++ == code - first) return i;
-        }
-        first += count;
-    }
-    return -1;
-}
-
-static void read_trees(inflater *z, unsigned char *literal, unsigned char *distance)
-{
-    static const int order[19] = {16, 17, 18, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 2, 14, 1, 15};
-    unsigned char meta[19] = {0}, all[320] = {0};
-    int literals = (int)take(z, 5) + 257, distances = (int)take(z, 5) + 1, i = 0;
-    int metas = (int)take(z, 4) + 4;
-    for (i = 0; i < metas; i++) meta[order[i]] = (unsigned char)take(z, 3);
-    for (i = 0; i < literals + distances;) {
-        int s = symbol(z, meta, 19), times = 1;
-        unsigned char value = (unsigned char)s;
-        if (s < 0) return;
-        if (s == 16) {
-            value = i > 0 ? all[i - 1] : 0;
-            times = 3 + (int)take(z, 2);
-        } else if (s > 16) {
-            value = 0;
-            times = s == 17 ? 3 + (int)take(z, 3) : 11 + (int)take(z, 7);
-        }
-        while (times-- > 0 && i < 320) all[i++] = value;
-    }
-    memcpy(literal, all, (size_t)literals);
-    memcpy(distance, all + literals, (size_t)distances);
-}
-
-/* Inflates raw deflate data into out[room]; returns the length, or room + 1 on any error. */
-static size_t inflate_all(inflater *z, unsigned char *out, size_t room)
-{
-    static unsigned char literal[288], distance[32];
-    size_t n = 0;
-    int last = 0, i;
-    while (!last) {
-        int kind;
-        last = (int)take(z, 1);
-        kind = (int)take(z, 2);
-        if (kind == 0 || kind == 3) return room + 1; /* our writer makes neither */
-        memset(literal, 0, sizeof literal);
-        memset(distance, 0, sizeof distance);
-        if (kind == 2) read_trees(z, literal, distance);
-        else {
-            for (i = 0; i < 288; i++) literal[i] = i < 144 ? 8 : i < 256 ? 9 : i < 280 ? 7 : 8;
-            for (i = 0; i < 30; i++) distance[i] = 5;
-        }
-        for (;;) {
-            int s = symbol(z, literal, 288);
-            size_t length = 3, back = 1;
-            if (s < 0 || z->bit / 8 > z->n) return room + 1;
-            if (s == 256) break;
-            if (s < 256) {
-                if (n == room) return room + 1;
-                out[n++] = (unsigned char)s;
-                continue;
-            }
-            for (i = 257; i < s; i++) length += (size_t)1 << (i < 265 ? 0 : (i - 261) / 4);
-            if (s == 285) length = 258;
-            else length += take(z, s < 265 ? 0 : (s - 261) / 4);
-            s = symbol(z, distance, 30);
-            if (s < 0) return room + 1;
-            for (i = 0; i < s; i++) back += (size_t)1 << (i < 4 ? 0 : (i - 2) / 2);
-            back += take(z, s < 4 ? 0 : (s - 2) / 2);
-            if (back > n || n + length > room) return room + 1;
-            while (length-- > 0) {
-                out[n] = out[n - back];
-                n++;
-            }
-        }
-    }
-    return n;
-}
-
-static uint32_t crc_bitwise(const unsigned char *p, size_t n)
-{
-    uint32_t crc = 0xffffffffu;
-    int k;
-    while (n--)
-        for (crc ^= *p++, k = 0; k < 8; k++) crc = crc & 1 ? crc >> 1 ^ 0xedb88320u : crc >> 1;
-    return ~crc;
-}
-
-static uint32_t big(const unsigned char *p)
-{
-    return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
-}
-
-static void unfilter(unsigned char *raw, int width, int height)
-{
-    size_t n = 3 * (size_t)width, i;
-    int y;
-    for (y = 0; y < height; y++) {
-        unsigned char *row = raw + (size_t)y * (n + 1) + 1, *up = y > 0 ? row - n - 1 : NULL;
-        for (i = 0; i < n; i++) {
-            int a = i >= 3 ? row[i - 3] : 0, b = up ? up[i] : 0, c = up && i >= 3 ? up[i - 3] : 0;
-            int p = a + b - c, pa = abs(p - a), pb = abs(p - b), pc = abs(p - c), guess = 0;
-            if (row[-1] == 1) guess = a;
-            if (row[-1] == 2) guess = b;
-            if (row[-1] == 3) guess = (a + b) / 2;
-            if (row[-1] == 4) guess = pa <= pb && pa <= pc ? a : pb <= pc ? b : c;
-            row[i] = (unsigned char)(row[i] + guess);
-        }
-    }
-    for (y = 0; y < height; y++) memmove(raw + (size_t)y * n, raw + (size_t)y * (n + 1) + 1, n);
-}
-
-/* Reads a PNG, checking every chunk; returns its 8-bit RGB pixels or NULL. */
-static unsigned char *read_png(const char *path, int *width, int *height)
-{
-    size_t n, at = 8, packed = 0, raw;
-    unsigned char *file = slurp(path, &n), *data, *out = NULL;
-    inflater z;
-    int good = file && n > 57 && memcmp(file, "\x89PNG\r\n\x1a\n", 8) == 0, ended = 0;
-    data = (unsigned char *)malloc(n + 1);
-    while (good && data && !ended) {
-        size_t length = big(file + at);
-        good = at + length + 12 <= n &&
-               crc_bitwise(file + at + 4, length + 4) == big(file + at + 8 + length);
-        if (!good) break;
-        if (memcmp(file + at + 4, "IDAT", 4) == 0) {
-            memcpy(data + packed, file + at + 8, length);
-            packed += length;
-        }
-        ended = memcmp(file + at + 4, "IEND", 4) == 0;
-        at += length + 12;
-        if (!ended && at + 12 > n) good = 0;
-    }
-    good = good && at == n && memcmp(file + 12, "IHDR", 4) == 0;
-    good =
-        good && file[24] == 8 && file[25] == 2 && file[26] == 0 && file[27] == 0 && file[28] == 0;
-    if (good) {
-        *width = (int)big(file + 16);
-        *height = (int)big(file + 20);
-        raw = (3 * (size_t)*width + 1) * (size_t)*height;
-        out = (unsigned char *)malloc(raw);
-        z.in = data + 2;
-        z.n = packed - 6;
-        z.bit = 0;
-        good = out && (data[0] * 256 + data[1]) % 31 == 0 && inflate_all(&z, out, raw) == raw &&
-               (z.bit + 7) / 8 == z.n && mpm__io_adler(1, out, raw) == big(data + packed - 4);
-        if (good) unfilter(out, *width, *height);
-    }
-    free(file);
-    free(data);
-    if (good) return out;
-    free(out);
-    return NULL;
-}
-
-static int png_matches(const char *path, const mpm_io_canvas *c)
-{
-    int width = 0, height = 0, same;
-    unsigned char *rgb = read_png(path, &width, &height);
-    same = rgb && width == c->width && height == c->height &&
-           memcmp(rgb, c->rgb, 3 * (size_t)width * (size_t)height) == 0;
-    free(rgb);
-    return same;
-}
-
 /* ---- messages and numbers ------------------------------------------------------------------ */
 
 static void test_messages(void)
@@ -272,8 +78,8 @@ static void test_messages(void)
     char text[160];
     mpm_fault f = {MPM_ERR_ARGUMENT, "spacing", MPM_R(-0.5), 12};
     mpm_io_progress p = {1200, 0, 9900, 9.7, "ns", 5900, 5.9};
-    holds("status text", strcmp(mpm_io_status_text(MPM_OK), "done") == 0);
-    holds("unknown status", strcmp(mpm_io_status_text((mpm_status)99), "unknown status") == 0);
+    holds("status text", strcmp(mpm_status_text(MPM_OK), "done") == 0);
+    holds("unknown status", strcmp(mpm_status_text((mpm_status)99), "unknown status") == 0);
     mpm_io_fault_text(text, sizeof text, &f);
     holds("fault text", strcmp(text, "an argument is out of its valid range: spacing = -0.5 "
                                           "(index 12)") == 0);
@@ -347,12 +153,11 @@ static void test_failures(void)
     static char lengthy[MPM_IO_PATH + 10];
     mpm_io_csv t;
     mpm_io_json j;
-    mpm_io_canvas c;
+    const unsigned char c[3] = {0, 0, 0};
     mpm_io_vtu_desc d = mpm_io_vtu_desc_default();
     mpm_fault f;
     const char *nowhere = FOLDER "/missing/file";
     memset(lengthy, 'a', sizeof lengthy - 1);
-    mpm_io_canvas_init(&c, 4, 4, NULL, 0);
     equal("csv nowhere", mpm_io_csv_begin(&t, nowhere, "a", NULL, &f), MPM_ERR_FILE);
     holds("fault is about the path", strncmp(f.field, "path", 4) == 0);
     mpm_io_csv_integer(&t, 1);
@@ -362,15 +167,14 @@ static void test_failures(void)
     equal("json: the error sticks", mpm_io_json_end(&j, &f), MPM_ERR_FILE);
     equal("vtu nowhere", mpm_io_vtu(nowhere, &d, &f), MPM_ERR_FILE);
     equal("pvd nowhere", mpm_io_pvd_add(nowhere, "x.vtu", 0, &f), MPM_ERR_FILE);
-    equal("png nowhere", mpm_io_png(nowhere, &c, NULL, &f), MPM_ERR_FILE);
+    equal("png nowhere", mpm_io_png(nowhere, c, 1, 1, NULL, &f), MPM_ERR_FILE);
     equal("checkpoint nowhere", mpm_io_checkpoint_write(nowhere, NULL, 0, &f), MPM_ERR_FILE);
     holds("nothing is left", !exists(nowhere) && !exists(FOLDER "/missing/file.part"));
-    equal("path too long", mpm_io_png(lengthy, &c, NULL, &f), MPM_ERR_ARGUMENT);
+    equal("path too long", mpm_io_png(lengthy, c, 1, 1, NULL, &f), MPM_ERR_ARGUMENT);
 
     mpm_io_make_directory(FOLDER "/taken", NULL); /* a folder has the name: renaming must fail */
-    equal("name taken by a folder", mpm_io_png(FOLDER "/taken", &c, NULL, &f), MPM_ERR_FILE);
+    equal("name taken by a folder", mpm_io_png(FOLDER "/taken", c, 1, 1, NULL, &f), MPM_ERR_FILE);
     holds("its .part is removed", !exists(FOLDER "/taken.part"));
-    mpm_io_canvas_free(&c);
 
     write_text(FOLDER "/keep.csv", "precious");
     mpm_io_csv_begin(&t, FOLDER "/keep.csv", "a,b", NULL, NULL);
@@ -660,7 +464,7 @@ static void test_checkpoint(void)
     equal("no such file", mpm_io_checkpoint_read(FOLDER "/none", in, 3, &f), MPM_ERR_FILE);
 }
 
-/* ---- a world: restart and cut --------------------------------------------------------------- */
+/* ---- a world: restart --------------------------------------------------------------- */
 
 /* A linear elastic response, stress += E strain: enough to make the points interact. */
 static mpm_status elastic(const void *material, const mpm_block *b)
@@ -710,7 +514,6 @@ static void test_restart(void)
     static int32_t numbers[4000];
     mpm_world whole, first, second;
     mpm_io_blob blobs[MPM_IO_WORLD_BLOBS + 2];
-    mpm_io_cut_desc d;
     mpm_fault f;
     int n;
     equal("a world", make_world(&whole), MPM_OK);
@@ -734,306 +537,62 @@ static void test_restart(void)
     equal("number of the first point", numbers[0], 0);
     equal("last of the first body", numbers[whole.body[1].first - 1], 0);
     equal("first of the second body", numbers[whole.body[1].first], 1);
-    d = mpm_io_cut_of(&whole, whole.points.v[2]);
-    d.at = MPM_R(0.6);
-    d.label = "velocity";
-    equal("picture of a world", mpm_io_cut_png(FOLDER "/world.png", &d, 1, 1, 400, &f), MPM_OK);
     mpm_free(&whole);
     mpm_free(&first);
     mpm_free(&second);
 }
 
-/* ---- pictures ------------------------------------------------------------------------------ */
+/* ---- PNG ----------------------------------------------------------------------------------- */
+
+/* Whether a picture written with a note comes back pixel by pixel. */
+static int comes_back(const char *path, const unsigned char *pixels, int width, int height)
+{
+    int w = 0, h = 0, same;
+    unsigned char *rgb;
+    mpm_fault f;
+    if (mpm_io_png(path, pixels, width, height, "a note", &f) != MPM_OK) return 0;
+    rgb = read_png(path, &w, &h);
+    same = rgb && w == width && h == height && memcmp(rgb, pixels, 3 * (size_t)width * (size_t)height) == 0;
+    free(rgb);
+    return same;
+}
 
 static void test_png(void)
 {
+    enum { WIDE = 1200, HIGH = 900 };
+    static unsigned char pixels[3 * WIDE * HIGH];
     const char *path = FOLDER "/picture.png";
-    static unsigned char own[4 * 20 * 10];
-    mpm_io_canvas c;
     mpm_fault f;
     size_t n, i;
-    int k;
-    holds("crc of 123456789", mpm__io_crc(0, "123456789", 9) == 0xcbf43926u);
-    holds("adler of Wikipedia",
-          mpm__io_adler(1, (const unsigned char *)"Wikipedia", 9) == 0x11e60398u);
-    equal("canvas too large", mpm_io_canvas_init(&c, 16385, 1, NULL, 0), MPM_ERR_ARGUMENT);
-    equal("canvas without pixels", (long)mpm_io_canvas_bytes(0, 5), 0);
-    equal("memory too small", mpm_io_canvas_init(&c, 20, 10, own, sizeof own - 1), MPM_ERR_MEMORY);
-    equal("canvas in own memory", mpm_io_canvas_init(&c, 20, 10, own, sizeof own), MPM_OK);
-    mpm_io_line(&c, 1, 1, 19, 9, 1.5, 0xff0000);
-    equal("small picture", mpm_io_png(path, &c, "a note", &f), MPM_OK);
-    holds("small picture comes back", png_matches(path, &c));
-    mpm_io_canvas_free(&c);
+    int x, y;
+    holds("crc of 123456789, by the reader", crc_bitwise((const unsigned char *)"123456789", 9) == 0xcbf43926u);
+    holds("adler of Wikipedia, by the reader", adler((const unsigned char *)"Wikipedia", 9) == 0x11e60398u);
+    equal("a picture without width", mpm_io_png(path, pixels, 0, 5, NULL, &f), MPM_ERR_ARGUMENT);
+    holds("... is named", strcmp(f.field, "width of picture") == 0);
+    equal("a picture too high", mpm_io_png(path, pixels, 1, 16385, NULL, &f), MPM_ERR_ARGUMENT);
+    equal("no pixels", mpm_io_png(path, NULL, 1, 1, NULL, &f), MPM_ERR_ARGUMENT);
+    for (i = 0; i < (size_t)20 * 10 * 3; i++) pixels[i] = (unsigned char)(i % 60 < 30 ? 255 : i / 60 * 20);
+    holds("a small picture comes back", comes_back(path, pixels, 20, 10));
+    holds("its note is kept", slurp_holds(path, "Description\0a note", 18));
+    holds("a single pixel comes back", comes_back(path, pixels, 1, 1));
 
-    mpm_io_canvas_init(&c, 1, 1, NULL, 0);
-    mpm_io_png(path, &c, NULL, &f);
-    holds("a single pixel comes back", png_matches(path, &c));
-    mpm_io_canvas_free(&c);
-
-    mpm_io_canvas_init(&c, 333, 257, NULL, 0);
-    for (i = 0; i < (size_t)333 * 257 * 3; i++) c.rgb[i] = (unsigned char)(random_next() >> 12);
-    mpm_io_png(path, &c, NULL, &f);
-    holds("noise comes back", png_matches(path, &c));
+    for (i = 0; i < (size_t)333 * 257 * 3; i++) pixels[i] = (unsigned char)(random_next() >> 12);
+    holds("noise comes back", comes_back(path, pixels, 333, 257));
     for (i = 0; i < (size_t)333 * 257 * 3; i++) /* repeats at many distances, rare symbols */
-        c.rgb[i] =
-            (unsigned char)(random_next() % 50 ? c.rgb[i > 4000 ? i - random_next() % 4000 : 0]
-                                               : (random_next() & random_next()));
-    mpm_io_png(path, &c, NULL, &f);
-    holds("patterns come back", png_matches(path, &c));
-    mpm_io_canvas_free(&c);
+        pixels[i] = (unsigned char)(random_next() % 50 ? pixels[i > 4000 ? i - random_next() % 4000 : 0]
+                                                        : (random_next() & random_next()));
+    holds("patterns come back", comes_back(path, pixels, 333, 257));
 
-    mpm_io_canvas_init(&c, 1200, 900, NULL, 0);
-    for (k = 0; k < 40; k++)
-        mpm_io_disc(&c, 30 * k, 20 * k, 10 + 2 * k, mpm_io_map_color(MPM_IO_DEEP, k / 39.0));
-    mpm_io_png(path, &c, NULL, &f);
-    holds("large picture comes back", png_matches(path, &c));
+    for (y = 0; y < HIGH; y++) /* discs of one colour each */
+        for (x = 0; x < WIDE; x++) {
+            const int dx = x % 120 - 60, dy = y % 90 - 45, inside = dx * dx + dy * dy < 1600;
+            for (i = 0; i < 3; i++)
+                pixels[3 * (WIDE * (size_t)y + (size_t)x) + i] =
+                    (unsigned char)(inside ? 20 * (x / 120) + 10 * (y / 90) * (int)i : 255);
+        }
+    holds("a large picture comes back", comes_back(path, pixels, WIDE, HIGH));
     free(slurp(path, &n));
     holds("1200 x 900 of flat areas in under 60 kB", n < 60000);
-    mpm_io_canvas_free(&c);
-}
-
-static int darkness(const mpm_io_canvas *c, int left, int top, int right, int bottom)
-{
-    int x, y, n = 0;
-    for (y = top; y < bottom; y++)
-        for (x = left; x < right; x++) n += mpm_io_pixel(c, x, y) != 0xffffff;
-    return n;
-}
-
-static void test_drawing(void)
-{
-    mpm_io_canvas c;
-    char every[96];
-    double sum = 0;
-    int x, y, k;
-    mpm_io_canvas_init(&c, 200, 100, NULL, 0);
-    mpm_io_rectangle(&c, 10, 20, 30, 5, 0x123456);
-    equal("pixels of a rectangle", darkness(&c, 0, 0, 200, 100), 150);
-    equal("its colour", mpm_io_pixel(&c, 39, 24), 0x123456);
-    equal("beside it", mpm_io_pixel(&c, 40, 24), 0xffffff);
-    mpm_io_canvas_fill(&c, 0xffffff);
-    mpm_io_disc(&c, 100, 50, 30, 0);
-    for (y = 0; y < 100; y++)
-        for (x = 0; x < 200; x++) sum += 1 - (mpm_io_pixel(&c, x, y) & 255) / 255.0;
-    CHECK_RELATIVE("area of a smooth disc", sum, 3.14159265 * 900, 0.005);
-    mpm_io_canvas_fill(&c, 0xffffff);
-    mpm_io_disc(&c, -1e30, NAN, 1e30, 0);
-    mpm_io_line(&c, -1e9, 50.5, 1e9, 50.5, 1, 0);
-    equal("a line far beyond the edges", mpm_io_pixel(&c, 100, 50), 0);
-    mpm_io_canvas_fill(&c, 0xffffff);
-    for (k = 0; k < 95; k++) every[k] = (char)(32 + k);
-    every[95] = 0;
-    for (k = 1; k < 95; k++) {
-        char one[2] = {0, 0};
-        one[0] = every[k];
-        mpm_io_canvas_fill(&c, 0xffffff);
-        mpm_io_text(&c, 50, 60, 18, MPM_IO_LEFT, 0, one);
-        if (darkness(&c, 0, 0, 200, 100) == 0) break;
-        if (darkness(&c, 0, 0, 46, 100) > 0 || darkness(&c, 0, 0, 200, 35) > 0) break;
-    }
-    equal("every character leaves ink in its place", k, 95);
-    CHECK_NEAR("micro is one character", mpm_io_text_width(9, "\xc2\xb5"),
-               mpm_io_text_width(9, "u"), 1e-9);
-    CHECK_NEAR("broken text ends", mpm_io_text_width(9, "\xe2"), mpm_io_text_width(9, "\x80"),
-               1e-9);
-    mpm_io_canvas_free(&c);
-}
-
-/* CIELAB lightness of a colour. */
-static double lightness(mpm_io_color color)
-{
-    static const double weight[3] = {0.0722, 0.7152, 0.2126};
-    double y = 0;
-    int k;
-    for (k = 0; k < 3; k++) {
-        double v = (double)(color >> 8 * k & 255) / 255;
-        y += weight[k] * (v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4));
-    }
-    return y > 0.008856 ? 116 * cbrt(y) - 16 : 903.3 * y;
-}
-
-static void test_colours(void)
-{
-    double even[2] = {0, 0}, turn = 0;
-    int map, k;
-    for (map = 0; map < 2; map++)
-        for (k = 1; k <= 20; k++) {
-            mpm_io_map m = (mpm_io_map)map;
-            double whole = lightness(mpm_io_map_color(m, 1)) - lightness(mpm_io_map_color(m, 0));
-            double step = lightness(mpm_io_map_color(m, k / 20.0)) -
-                          lightness(mpm_io_map_color(m, (k - 1) / 20.0));
-            double off = fabs(step / whole * 20 - 1);
-            if (off > even[map]) even[map] = off;
-        }
-    CHECK_NEAR("DEEP: steps of lightness, off the mean", even[0], 0, 0.2);
-    CHECK_NEAR("HEAT: steps of lightness, off the mean", even[1], 0, 0.2);
-    for (k = 0; k <= 10; k++) {
-        double off = fabs(lightness(mpm_io_map_color(MPM_IO_DIVERGING, k / 20.0)) -
-                          lightness(mpm_io_map_color(MPM_IO_DIVERGING, 1 - k / 20.0)));
-        if (off > turn) turn = off;
-    }
-    CHECK_NEAR("DIVERGING: both sides as light", turn, 0, 3);
-    equal("clamped below", mpm_io_map_color(MPM_IO_DEEP, -5), mpm_io_map_color(MPM_IO_DEEP, 0));
-    equal("clamped above", mpm_io_map_color(MPM_IO_DEEP, 5), mpm_io_map_color(MPM_IO_DEEP, 1));
-    equal("not a number is grey", mpm_io_map_color(MPM_IO_DEEP, NAN), 0x9aa0a6);
-}
-
-/* ---- figures ------------------------------------------------------------------------------- */
-
-enum { SIDE = 40 };
-
-/* Two bodies of SIDE x SIDE points for x > 0, one above the other, in two layers along y. */
-static mpm_real cut_x[3][4 * SIDE * SIDE], cut_value[4 * SIDE * SIDE];
-static int32_t cut_body[4 * SIDE * SIDE];
-
-static mpm_io_cut_desc make_cut(void)
-{
-    mpm_io_cut_desc d = mpm_io_cut_desc_default();
-    int i, j, layer, n = 0;
-    for (layer = 0; layer < 2; layer++)
-        for (j = 0; j < 2 * SIDE; j++)
-            for (i = 0; i < SIDE; i++, n++) {
-                cut_x[0][n] = (mpm_real)i + MPM_R(0.5);
-                cut_x[1][n] = (mpm_real)layer * 5;
-                cut_x[2][n] = (mpm_real)j + MPM_R(0.5) - SIDE;
-                cut_value[n] = layer ? 100 : j < SIDE ? MPM_R(0.25) : MPM_R(0.75);
-                cut_body[n] = j < SIDE ? 7 : 3;
-            }
-    for (i = 0; i < 3; i++) d.x[i] = cut_x[i];
-    d.count = 4 * SIDE * SIDE;
-    d.value = cut_value;
-    d.body = cut_body;
-    d.spacing = 1;
-    d.low = 0;
-    d.high = 1;
-    return d;
-}
-
-static void test_cut(void)
-{
-    static const double window[4] = {-50, 50, -50, 50};
-    mpm_io_cut_desc d = make_cut(), panels[2];
-    mpm_io_canvas c;
-    mpm_fault f;
-    mpm_io_color low = mpm_io_map_color(MPM_IO_DEEP, 0.25),
-                 high = mpm_io_map_color(MPM_IO_DEEP, 0.75);
-    size_t n;
-    int left;
-    memcpy(d.window, window, sizeof window);
-    mpm_io_canvas_init(&c, 432, 432, NULL, 0); /* the frame: 400 pixels wide, 4 to a unit */
-    equal("cut", mpm_io_cut(&c, mpm_io_tile(&c, 1, 1, 0), &d, &f), MPM_OK);
-    equal("upper body at its place", mpm_io_pixel(&c, 216 + 80, 216 - 80), high);
-    equal("lower body at its place", mpm_io_pixel(&c, 216 + 80, 216 + 80), low);
-    equal("nothing on the other side", mpm_io_pixel(&c, 216 - 80, 216 + 80), 0xffffff);
-    equal("nothing outside the bodies", mpm_io_pixel(&c, 216 + 80, 216 - 175), 0xffffff);
-    holds("a line between the bodies", mpm_io_pixel(&c, 216 + 80, 216) != low &&
-                                                mpm_io_pixel(&c, 216 + 80, 216) != high);
-    equal("the surface within a spacing", mpm_io_pixel(&c, 216 + 80, 216 - 164), 0xffffff);
-    d.mirror = 1;
-    d.style = MPM_IO_NEAREST;
-    mpm_io_canvas_fill(&c, 0xffffff);
-    equal("mirrored cut", mpm_io_cut(&c, mpm_io_tile(&c, 1, 1, 0), &d, &f), MPM_OK);
-    equal("the other half", mpm_io_pixel(&c, 216 - 80, 216 + 80), low);
-    for (left = 0;
-         left < 216 && mpm_io_pixel(&c, 215 - left, 100) == mpm_io_pixel(&c, 216 + left, 100);)
-        left++;
-    equal("pixels that mirror each other, up to the frame", left, 199);
-    d.at = 5;
-    mpm_io_canvas_fill(&c, 0xffffff);
-    mpm_io_cut(&c, mpm_io_tile(&c, 1, 1, 0), &d, &f);
-    equal("the other layer, clamped", mpm_io_pixel(&c, 216 + 80, 216 + 80),
-          mpm_io_map_color(MPM_IO_DEEP, 1));
-    d.at = 2.5;
-    equal("no points in the slab", mpm_io_cut(&c, mpm_io_tile(&c, 1, 1, 0), &d, &f),
-          MPM_ERR_ARGUMENT);
-    holds("fault names it", strcmp(f.field, "points in the slab") == 0);
-    d.at = 0;
-    d.spacing = 0;
-    equal("no spacing", mpm_io_cut(&c, mpm_io_tile(&c, 1, 1, 0), &d, &f), MPM_ERR_ARGUMENT);
-    holds("fault names it", strcmp(f.field, "spacing") == 0);
-    mpm_io_canvas_free(&c);
-
-    panels[0] = make_cut();
-    panels[0].mirror = 1;
-    panels[0].title = "two bodies";
-    panels[0].time = "t = 1 ns";
-    panels[0].label = "value";
-    panels[0].length_unit = "\xc2\xb5m";
-    panels[1] = panels[0];
-    panels[1].map = MPM_IO_HEAT;
-    panels[1].ticks = 1;
-    panels[1].value = NULL;
-    equal("picture of two cuts", mpm_io_cut_png(FOLDER "/cut.png", panels, 2, 2, 400, &f), MPM_OK);
-    free(slurp(FOLDER "/cut.png", &n));
-    holds("... of a decent size", n > 3000 && n < 100000);
-    equal("no panels", mpm_io_cut_png(FOLDER "/cut.png", panels, 0, 2, 400, &f), MPM_ERR_ARGUMENT);
-}
-
-static void test_ticks(void)
-{
-    mpm__io_tick ticks[MPM__IO_TICKS];
-    CHECK_NEAR("nice 0.28", mpm__io_nice(0.28), 0.2, 1e-12);
-    CHECK_NEAR("nice 5", mpm__io_nice(5), 5, 1e-12);
-    CHECK_NEAR("nice 999", mpm__io_nice(999), 500, 1e-12);
-    equal("ticks of -1 .. 1", mpm__io_ticks(-1, 1, 0, 6, ticks), 5);
-    holds("the first", strcmp(ticks[0].text, "-1.0") == 0);
-    holds("zero without a sign", strcmp(ticks[2].text, "0.0") == 0);
-    mpm__io_ticks(-6, 3, 1, 6, ticks);
-    holds("powers of ten", strcmp(ticks[0].text, "10^-6") == 0);
-    mpm__io_ticks(0, 3e6, 0, 3, ticks);
-    holds("large numbers", strcmp(ticks[1].text, "1e6") == 0);
-}
-
-static void test_plots(void)
-{
-    static mpm_real x[200], y[200], z[200];
-    mpm_io_curve curves[2];
-    mpm_io_plot_desc p = mpm_io_plot_desc_default();
-    mpm_io_scatter_desc s = mpm_io_scatter_desc_default();
-    mpm_io_canvas c;
-    mpm_fault f;
-    int i;
-    for (i = 0; i < 200; i++) {
-        x[i] = (mpm_real)i / 100;
-        y[i] = (mpm_real)sin(i / 20.0);
-        z[i] = (mpm_real)cos(i / 20.0);
-    }
-    z[100] = (mpm_real)NAN;
-    memset(curves, 0, sizeof curves);
-    curves[0].name = "sine";
-    curves[0].count = 200;
-    curves[0].x = x;
-    curves[0].y = y;
-    curves[1] = curves[0];
-    curves[1].name = "cosine";
-    curves[1].y = z;
-    curves[1].mark = MPM_IO_DASHED;
-    curves[1].color = 1;
-    p.curves = curves;
-    p.curve_count = 2;
-    p.x_label = "time [\xc2\xb5s]";
-    p.y_label = "velocity [m/s]";
-    mpm_io_canvas_init(&c, 800, 400, NULL, 0);
-    equal("plot", mpm_io_plot(&c, mpm_io_tile(&c, 2, 1, 0), &p, &f), MPM_OK);
-    holds("ink in its tile", darkness(&c, 0, 0, 400, 400) > 2000);
-    equal("none beyond it", darkness(&c, 400, 0, 800, 400), 0);
-    s.count = 200;
-    s.x = y;
-    s.y = z;
-    s.value = x;
-    s.label = "time [\xc2\xb5s]";
-    s.note = "not equal";
-    equal("scatter", mpm_io_scatter(&c, mpm_io_tile(&c, 2, 1, 1), &s, &f), MPM_OK);
-    holds("ink in the other tile", darkness(&c, 400, 0, 800, 400) > 2000);
-    equal("written", mpm_io_png(FOLDER "/plots.png", &c, NULL, &f), MPM_OK);
-    p.log_x = p.log_y = 1;
-    equal("logarithmic, where positive", mpm_io_plot(&c, mpm_io_tile(&c, 2, 1, 0), &p, &f), MPM_OK);
-    curves[0].count = curves[1].count = 0;
-    equal("nothing to plot", mpm_io_plot(&c, mpm_io_tile(&c, 2, 1, 0), &p, &f), MPM_ERR_ARGUMENT);
-    s.count = 0;
-    equal("nothing to scatter", mpm_io_scatter(&c, mpm_io_tile(&c, 2, 1, 1), &s, &f),
-          MPM_ERR_ARGUMENT);
-    mpm_io_canvas_free(&c);
 }
 
 int main(void)
@@ -1049,10 +608,5 @@ int main(void)
     test_checkpoint();
     test_restart();
     test_png();
-    test_drawing();
-    test_colours();
-    test_cut();
-    test_ticks();
-    test_plots();
     return check_end();
 }

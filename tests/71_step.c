@@ -99,7 +99,7 @@ static void oracle_like(const mpm_desc *d, const hooke *h)
     O.rings = d->geometry == MPM_AXISYMMETRIC;
     O.mirror[0] = d->side[0] == MPM_SIDE_SYMMETRY;
     O.mirror[1] = d->side[2] == MPM_SIDE_SYMMETRY && !O.rings;
-    O.friction = (double)d->friction;
+    O.friction = (double)d->contact.friction;
     O.cell = 1;
     O.spacing = 0.5;
     O.density = (double)DENSITY;
@@ -131,7 +131,7 @@ static void beside_oracle(const char *name, mpm_geometry geometry, mpm_basis bas
     int k;
     d.geometry = geometry;
     d.basis = basis;
-    d.friction = (mpm_real)friction;
+    d.contact.friction = (mpm_real)friction;
     d.side[4] = MPM_SIDE_FIXED;
     if (quarter) d.side[0] = d.side[2] = MPM_SIDE_SYMMETRY;
     CHECK_TRUE("oracle: ball and block", scene(&w, &d, &metal));

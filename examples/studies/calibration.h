@@ -203,7 +203,7 @@ static inline void calibration_collect(const calibration *q, const study *s, cal
             side->bonded += side->map.bonds[k];
         }
         side->status = mpm_logistic_fit(&side->fit, x1, x2, outcome, side->tests, q->ridge, 200, NULL);
-        side->why = mpm_io_status_text(side->status);
+        side->why = mpm_status_text(side->status);
         if (side->bonded == 0 || side->bonded == side->tests) side->why = "one class only";
         if (side->tests < 6) side->why = "fewer than six runs";
     }
@@ -246,8 +246,8 @@ static inline int calibration_draw(const calibration *q, const calibration_resul
     enum { STEPS = 200 };
     static mpm_real x[2][2][CALIBRATION_NODES], y[2][2][CALIBRATION_NODES], bx[2][2 * STEPS + 1], by[2][2 * STEPS + 1];
     mpm_real px[4], py[4];
-    mpm_io_curve curve[2][5];
-    mpm_io_plot_desc d[2];
+    mpm_draw_curve curve[2][5];
+    mpm_draw_plot_desc d[2];
     char title[2][80], name[2][40];
     const double high = calibration_x(q, q->gdot[1]), low = calibration_x(q, q->gdot[0]);
     double root[2];
@@ -282,12 +282,12 @@ static inline int calibration_draw(const calibration *q, const calibration_resul
             curve[size][which].name = which ? "bonded" : "not bonded";
             curve[size][which].x = x[size][which];
             curve[size][which].y = y[size][which];
-            curve[size][which].mark = MPM_IO_DOTS;
+            curve[size][which].mark = MPM_DRAW_DOTS;
             curve[size][which].color = which;
             curve[size][2 + which].x = bx[which];
             curve[size][2 + which].y = by[which];
             curve[size][2 + which].count = 2 * STEPS + 1;
-            curve[size][2 + which].mark = which == size ? MPM_IO_CURVE : MPM_IO_DASHED;
+            curve[size][2 + which].mark = which == size ? MPM_DRAW_CURVE : MPM_DRAW_DASHED;
             curve[size][2 + which].color = 2 + which;
             snprintf(name[which], sizeof name[which], "boundary, %g um", q->diameter[which]);
             curve[size][2 + which].name = r->side[which].status >= 0 ? name[which] : NULL;
@@ -296,9 +296,9 @@ static inline int calibration_draw(const calibration *q, const calibration_resul
         curve[size][4].x = px;
         curve[size][4].y = py;
         curve[size][4].count = (size_t)r->points;
-        curve[size][4].mark = MPM_IO_DOTS;
+        curve[size][4].mark = MPM_DRAW_DOTS;
         curve[size][4].color = 5;
-        d[plots] = mpm_io_plot_desc_default();
+        d[plots] = mpm_draw_plot_desc_default();
         d[plots].curves = curve[size];
         d[plots].curve_count = 5;
         d[plots].log_x = d[plots].log_y = !strcmp(q->scale, "log");

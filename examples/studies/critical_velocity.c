@@ -49,9 +49,9 @@ static int write_curve(const request *q, const critical_curve *curve, mpm_fault 
 static int draw_curve(const request *q, const critical_curve *curve, mpm_fault *fault)
 {
     static mpm_real x[CRITICAL_RUNS], y[2][CRITICAL_RUNS];
-    mpm_io_curve line[2][OFFSETS];
+    mpm_draw_curve line[2][OFFSETS];
     char name[OFFSETS][40], path[MPM_IO_PATH];
-    mpm_io_plot_desc d[2];
+    mpm_draw_plot_desc d[2];
     int k, p, count = 0;
     for (k = 0; k < curve->runs; k++) {
         const critical_run *r = &curve->run[k];
@@ -73,7 +73,7 @@ static int draw_curve(const request *q, const critical_curve *curve, mpm_fault *
         line[1][count - 1].count++;
     }
     for (p = 0; p < 2; p++) {
-        d[p] = mpm_io_plot_desc_default();
+        d[p] = mpm_draw_plot_desc_default();
         d[p].curves = line[p];
         d[p].curve_count = count;
         d[p].x_label = "impact velocity, m/s";

@@ -200,8 +200,8 @@ static inline int position_table(work *w, const critical_line *size)
 /* The same as a picture, a curve per size. */
 static inline int position_plot(work *w, const critical_line *size)
 {
-    mpm_io_curve line[SIZES];
-    mpm_io_plot_desc d = mpm_io_plot_desc_default();
+    mpm_draw_curve line[SIZES];
+    mpm_draw_plot_desc d = mpm_draw_plot_desc_default();
     char path[MPM_IO_PATH];
     int k;
     memset(line, 0, sizeof line);
@@ -209,7 +209,7 @@ static inline int position_plot(work *w, const critical_line *size)
         line[k].x = size[k].x;
         line[k].y = size[k].y;
         line[k].count = size[k].count;
-        line[k].mark = MPM_IO_CURVE;
+        line[k].mark = MPM_DRAW_CURVE;
         line[k].color = k;
         line[k].name = size[k].name;
     }
@@ -226,8 +226,8 @@ static inline int critical_plot(work *w, const critical_line *ours, int count)
 {
     static const mpm_real two_sizes[2] = {14, 30}, measured[2] = {810, 770};
     mpm_real x[SIZES], said[SIZES];
-    mpm_io_curve line[SETTINGS + 3];
-    mpm_io_plot_desc d = mpm_io_plot_desc_default();
+    mpm_draw_curve line[SETTINGS + 3];
+    mpm_draw_plot_desc d = mpm_draw_plot_desc_default();
     char path[MPM_IO_PATH];
     int k;
     memset(line, 0, sizeof line);
@@ -240,7 +240,7 @@ static inline int critical_plot(work *w, const critical_line *ours, int count)
         line[k].x = own ? ours[k].x : k == count ? x : two_sizes;
         line[k].y = own ? ours[k].y : k == count ? said : measured;
         line[k].count = own ? ours[k].count : k == count ? SIZES : 2;
-        line[k].mark = own ? ours[k].count > 1 ? MPM_IO_CURVE : MPM_IO_DOTS : k == count ? MPM_IO_DASHED : MPM_IO_DOTS;
+        line[k].mark = own && ours[k].count > 1 ? MPM_DRAW_CURVE : !own && k == count ? MPM_DRAW_DASHED : MPM_DRAW_DOTS;
         line[k].color = k;
         line[k].name = own ? ours[k].name : k == count ? "source A" : "experiment";
     }

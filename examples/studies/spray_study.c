@@ -332,15 +332,15 @@ static mpm_status write_table(const study *st, mpm_fault *fault)
 /* One panel: up to CURVES curves over common points. */
 typedef struct panel {
     mpm_real x[TIMES], y[CURVES][TIMES];
-    mpm_io_curve curve[CURVES];
+    mpm_draw_curve curve[CURVES];
     char name[CURVES][40];
-    mpm_io_plot_desc d;
+    mpm_draw_plot_desc d;
 } panel;
 
 static void panel_begin(panel *p, const char *title, const char *x_label, const char *y_label)
 {
     memset(p, 0, sizeof *p);
-    p->d = mpm_io_plot_desc_default();
+    p->d = mpm_draw_plot_desc_default();
     p->d.title = title;
     p->d.x_label = x_label;
     p->d.y_label = y_label;
@@ -355,7 +355,7 @@ static void panel_curve(panel *p, int points, const char *format, double number)
     p->curve[k].count = (size_t)points;
     p->curve[k].x = p->x;
     p->curve[k].y = p->y[k];
-    p->curve[k].mark = MPM_IO_CURVE;
+    p->curve[k].mark = MPM_DRAW_CURVE;
     p->curve[k].color = k;
 }
 
@@ -376,13 +376,14 @@ static void panel_of_speeds(panel *p, const study *st, int value, double scale, 
 
 static mpm_status draw_panels(const char *path, panel *p, int count, int columns, mpm_fault *fault)
 {
-    mpm_io_canvas canvas;
+    mpm_draw_canvas canvas;
     int rows = (count + columns - 1) / columns, k;
-    mpm_status status = mpm_io_canvas_init(&canvas, 620 * columns, 420 * rows, NULL, 0);
+    mpm_status status = mpm_draw_canvas_init(&canvas, 620 * columns, 420 * rows, NULL, 0);
     for (k = 0; k < count && status >= 0; k++)
-        status = mpm_io_plot(&canvas, mpm_io_tile(&canvas, columns, rows, k), &p[k].d, fault);
-    if (status >= 0) status = mpm_io_png(path, &canvas, "examples/studies/spray_study.c", fault);
-    mpm_io_canvas_free(&canvas);
+        status = mpm_draw_plot(&canvas, mpm_draw_tile(&canvas, columns, rows, k), &p[k].d, fault);
+    if (status >= 0)
+        status = mpm_io_png(path, canvas.rgb, canvas.width, canvas.height, "examples/studies/spray_study.c", fault);
+    mpm_draw_canvas_free(&canvas);
     return status;
 }
 
@@ -442,10 +443,10 @@ static mpm_status plot_b9(const study *st, mpm_fault *fault)
 static int pictures(const study *st, mpm_fault *fault)
 {
     char path[MPM_IO_PATH], title[80];
-    mpm_io_canvas plume, top;
+    mpm_draw_canvas plume, top;
     spray_columns columns;
     int k, row, bad = 0;
-    if (mpm_io_canvas_init(&plume, 1300, 1560, NULL, 0) < 0 || mpm_io_canvas_init(&top, 1560, 1160, NULL, 0) < 0 ||
+    if (mpm_draw_canvas_init(&plume, 1300, 1560, NULL, 0) < 0 || mpm_draw_canvas_init(&top, 1560, 1160, NULL, 0) < 0 ||
         spray_columns_init(&columns, 60000))
         return fprintf(stderr, "error: no memory for pictures\n"), -1;
     for (k = 0; k < SPEEDS && !bad; k++)
@@ -456,19 +457,19 @@ static int pictures(const study *st, mpm_fault *fault)
             bad = mpm_spray_init(&s, &d, NULL, 0) < 0 || run_to(&s, c.time);
             snprintf(title, sizeof title, "%g m/s, alpha %g", speeds[k], c.alpha);
             if (!bad && s.deposited > 0)
-                bad = spray_draw_deposit(&top, mpm_io_tile(&top, SPEEDS, 2, row * SPEEDS + k), &s, &columns, 20,
+                bad = spray_draw_deposit(&top, mpm_draw_tile(&top, SPEEDS, 2, row * SPEEDS + k), &s, &columns, 20,
                                          title, fault) < 0;
             if (!bad && row)
-                bad = spray_draw_plume(&plume, mpm_io_tile(&plume, 1, SPEEDS, k), &s, &columns, speeds[k],
+                bad = spray_draw_plume(&plume, mpm_draw_tile(&plume, 1, SPEEDS, k), &s, &columns, speeds[k],
                                        title, fault) < 0;
             mpm_spray_free(&s);
         }
     snprintf(path, sizeof path, "%s/spray_b8.png", st->data);
-    bad = bad || mpm_io_png(path, &plume, "examples/studies/spray_study.c", fault) < 0;
+    bad = bad || mpm_io_png(path, plume.rgb, plume.width, plume.height, "examples/studies/spray_study.c", fault) < 0;
     snprintf(path, sizeof path, "%s/spray_b10.png", st->data);
-    bad = bad || mpm_io_png(path, &top, "examples/studies/spray_study.c", fault) < 0;
-    mpm_io_canvas_free(&plume);
-    mpm_io_canvas_free(&top);
+    bad = bad || mpm_io_png(path, top.rgb, top.width, top.height, "examples/studies/spray_study.c", fault) < 0;
+    mpm_draw_canvas_free(&plume);
+    mpm_draw_canvas_free(&top);
     spray_columns_free(&columns);
     return bad ? -1 : 0;
 }

@@ -5,6 +5,7 @@
 #define STUDY_H
 
 #include "impact_options.h"
+#include "mpm_draw.h"
 #include "program.h"
 
 #include <time.h>
@@ -373,17 +374,17 @@ static inline int study_need(study *s, const impact_case *c, double *value, char
 /* ---- plots --------------------------------------------------------------------------------- */
 
 /* `count` plots in one picture. */
-static inline int study_plots(const char *path, const mpm_io_plot_desc *d, int count, int columns, const char *note,
+static inline int study_plots(const char *path, const mpm_draw_plot_desc *d, int count, int columns, const char *note,
                               mpm_fault *fault)
 {
-    mpm_io_canvas canvas;
+    mpm_draw_canvas canvas;
     const int rows = (count + columns - 1) / columns;
     int k;
-    mpm_status status = mpm_io_canvas_init(&canvas, 620 * columns, 440 * rows, NULL, 0);
+    mpm_status status = mpm_draw_canvas_init(&canvas, 620 * columns, 440 * rows, NULL, 0);
     for (k = 0; k < count && status >= 0; k++)
-        status = mpm_io_plot(&canvas, mpm_io_tile(&canvas, columns, rows, k), &d[k], fault);
-    if (status >= 0) status = mpm_io_png(path, &canvas, note, fault);
-    mpm_io_canvas_free(&canvas);
+        status = mpm_draw_plot(&canvas, mpm_draw_tile(&canvas, columns, rows, k), &d[k], fault);
+    if (status >= 0) status = mpm_io_png(path, canvas.rgb, canvas.width, canvas.height, note, fault);
+    mpm_draw_canvas_free(&canvas);
     return status >= 0;
 }
 

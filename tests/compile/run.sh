@@ -14,7 +14,8 @@ symbol() {
     mpm_ptw.h) echo 'mpm_material_preset_count()' ;;
     mpm_bond.h) echo '(mpm_bond_check(0, 0) != MPM_OK)' ;;
     mpm_measure.h) echo '(int)mpm_critical_velocity_2003(1, 1, 1, 1)' ;;
-    mpm_io.h) echo 'mpm_io_status_text(MPM_OK)[0]' ;;
+    mpm_io.h) echo '(int)mpm_io_number_text(0, 0, 0)' ;;
+    mpm_draw.h) echo '(int)mpm_draw_canvas_bytes(0, 0)' ;;
     mpm_spray.h) echo '(int)mpm_spray_bytes(0)' ;;
     esac
 }

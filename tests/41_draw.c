@@ -1,0 +1,389 @@
+/* 41_draw - pictures: pixels are where they belong, numbers on axes are those of printf, and a canvas written by
+   mpm_io.h comes back. SPDX-License-Identifier: MIT */
+#define MPM_IMPLEMENTATION
+#include "mpm_draw.h"
+#include "mpm_io.h"
+
+#include "check.h"
+#include "png.h"
+
+#ifdef MPM_FLOAT
+#define FOLDER "build/test-draw-f32"
+#else
+#define FOLDER "build/test-draw"
+#endif
+
+/* The checks as functions: an argument that draws is then evaluated once. */
+static void equal(const char *what, long got, long wanted) { CHECK_EQUAL(what, got, wanted); }
+static void holds(const char *what, int condition) { CHECK_TRUE(what, condition); }
+
+static int png_matches(const char *path, const mpm_draw_canvas *c)
+{
+    int width = 0, height = 0, same;
+    unsigned char *rgb = read_png(path, &width, &height);
+    same = rgb && width == c->width && height == c->height &&
+           memcmp(rgb, c->rgb, 3 * (size_t)width * (size_t)height) == 0;
+    free(rgb);
+    return same;
+}
+
+/* ---- canvas and primitives ----------------------------------------------------------------- */
+
+static void test_canvas(void)
+{
+    static unsigned char own[4 * 20 * 10];
+    mpm_draw_canvas c;
+    mpm_fault f;
+    equal("canvas too large", mpm_draw_canvas_init(&c, 16385, 1, NULL, 0), MPM_ERR_ARGUMENT);
+    equal("canvas without pixels", (long)mpm_draw_canvas_bytes(0, 5), 0);
+    equal("memory too small", mpm_draw_canvas_init(&c, 20, 10, own, sizeof own - 1), MPM_ERR_MEMORY);
+    equal("canvas in own memory", mpm_draw_canvas_init(&c, 20, 10, own, sizeof own), MPM_OK);
+    mpm_draw_line(&c, 1, 1, 19, 9, 1.5, 0xff0000);
+    equal("written", mpm_io_png(FOLDER "/line.png", c.rgb, c.width, c.height, "a note", &f), MPM_OK);
+    holds("... and back", png_matches(FOLDER "/line.png", &c));
+    mpm_draw_canvas_free(&c);
+}
+
+static int darkness(const mpm_draw_canvas *c, int left, int top, int right, int bottom)
+{
+    int x, y, n = 0;
+    for (y = top; y < bottom; y++)
+        for (x = left; x < right; x++) n += mpm_draw_pixel(c, x, y) != 0xffffff;
+    return n;
+}
+
+static void test_drawing(void)
+{
+    mpm_draw_canvas c;
+    char every[96];
+    double sum = 0;
+    int x, y, k;
+    mpm_draw_canvas_init(&c, 200, 100, NULL, 0);
+    mpm_draw_rectangle(&c, 10, 20, 30, 5, 0x123456);
+    equal("pixels of a rectangle", darkness(&c, 0, 0, 200, 100), 150);
+    equal("its colour", mpm_draw_pixel(&c, 39, 24), 0x123456);
+    equal("beside it", mpm_draw_pixel(&c, 40, 24), 0xffffff);
+    mpm_draw_fill(&c, 0xffffff);
+    mpm_draw_disc(&c, 100, 50, 30, 0);
+    for (y = 0; y < 100; y++)
+        for (x = 0; x < 200; x++) sum += 1 - (mpm_draw_pixel(&c, x, y) & 255) / 255.0;
+    CHECK_RELATIVE("area of a smooth disc", sum, 3.14159265 * 900, 0.005);
+    mpm_draw_fill(&c, 0xffffff);
+    mpm_draw_disc(&c, -1e30, NAN, 1e30, 0);
+    mpm_draw_line(&c, -1e9, 50.5, 1e9, 50.5, 1, 0);
+    equal("a line far beyond the edges", mpm_draw_pixel(&c, 100, 50), 0);
+    mpm_draw_fill(&c, 0xffffff);
+    for (k = 0; k < 95; k++) every[k] = (char)(32 + k);
+    every[95] = 0;
+    for (k = 1; k < 95; k++) {
+        char one[2] = {0, 0};
+        one[0] = every[k];
+        mpm_draw_fill(&c, 0xffffff);
+        mpm_draw_text(&c, 50, 60, 18, MPM_DRAW_LEFT, 0, one);
+        if (darkness(&c, 0, 0, 200, 100) == 0) break;
+        if (darkness(&c, 0, 0, 46, 100) > 0 || darkness(&c, 0, 0, 200, 35) > 0) break;
+    }
+    equal("every character leaves ink in its place", k, 95);
+    CHECK_NEAR("micro is one character", mpm_draw_text_width(9, "\xc2\xb5"),
+               mpm_draw_text_width(9, "u"), 1e-9);
+    CHECK_NEAR("broken text ends", mpm_draw_text_width(9, "\xe2"), mpm_draw_text_width(9, "\x80"),
+               1e-9);
+    mpm_draw_canvas_free(&c);
+}
+
+/* CIELAB lightness of a colour. */
+static double lightness(mpm_draw_color color)
+{
+    static const double weight[3] = {0.0722, 0.7152, 0.2126};
+    double y = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        double v = (double)(color >> 8 * k & 255) / 255;
+        y += weight[k] * (v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4));
+    }
+    return y > 0.008856 ? 116 * cbrt(y) - 16 : 903.3 * y;
+}
+
+static void test_colours(void)
+{
+    double even[2] = {0, 0}, turn = 0;
+    int map, k;
+    for (map = 0; map < 2; map++)
+        for (k = 1; k <= 20; k++) {
+            mpm_draw_map m = (mpm_draw_map)map;
+            double whole = lightness(mpm_draw_map_color(m, 1)) - lightness(mpm_draw_map_color(m, 0));
+            double step = lightness(mpm_draw_map_color(m, k / 20.0)) -
+                          lightness(mpm_draw_map_color(m, (k - 1) / 20.0));
+            double off = fabs(step / whole * 20 - 1);
+            if (off > even[map]) even[map] = off;
+        }
+    CHECK_NEAR("DEEP: steps of lightness, off the mean", even[0], 0, 0.2);
+    CHECK_NEAR("HEAT: steps of lightness, off the mean", even[1], 0, 0.2);
+    for (k = 0; k <= 10; k++) {
+        double off = fabs(lightness(mpm_draw_map_color(MPM_DRAW_DIVERGING, k / 20.0)) -
+                          lightness(mpm_draw_map_color(MPM_DRAW_DIVERGING, 1 - k / 20.0)));
+        if (off > turn) turn = off;
+    }
+    CHECK_NEAR("DIVERGING: both sides as light", turn, 0, 3);
+    equal("clamped below", mpm_draw_map_color(MPM_DRAW_DEEP, -5), mpm_draw_map_color(MPM_DRAW_DEEP, 0));
+    equal("clamped above", mpm_draw_map_color(MPM_DRAW_DEEP, 5), mpm_draw_map_color(MPM_DRAW_DEEP, 1));
+    equal("not a number is grey", mpm_draw_map_color(MPM_DRAW_DEEP, NAN), 0x9aa0a6);
+}
+
+/* ---- figures ------------------------------------------------------------------------------- */
+
+enum { SIDE = 40 };
+
+/* Two bodies of SIDE x SIDE points for x > 0, one above the other, in two layers along y. */
+static mpm_real cut_x[3][4 * SIDE * SIDE], cut_value[4 * SIDE * SIDE];
+static int32_t cut_body[4 * SIDE * SIDE];
+
+static mpm_draw_cut_desc make_cut(void)
+{
+    mpm_draw_cut_desc d = mpm_draw_cut_desc_default();
+    int i, j, layer, n = 0;
+    for (layer = 0; layer < 2; layer++)
+        for (j = 0; j < 2 * SIDE; j++)
+            for (i = 0; i < SIDE; i++, n++) {
+                cut_x[0][n] = (mpm_real)i + MPM_R(0.5);
+                cut_x[1][n] = (mpm_real)layer * 5;
+                cut_x[2][n] = (mpm_real)j + MPM_R(0.5) - SIDE;
+                cut_value[n] = layer ? 100 : j < SIDE ? MPM_R(0.25) : MPM_R(0.75);
+                cut_body[n] = j < SIDE ? 7 : 3;
+            }
+    for (i = 0; i < 3; i++) d.x[i] = cut_x[i];
+    d.count = 4 * SIDE * SIDE;
+    d.value = cut_value;
+    d.body = cut_body;
+    d.spacing = 1;
+    d.low = 0;
+    d.high = 1;
+    return d;
+}
+
+static void test_cut(void)
+{
+    static const double window[4] = {-50, 50, -50, 50};
+    mpm_draw_cut_desc d = make_cut(), panels[2];
+    mpm_draw_canvas c;
+    mpm_fault f;
+    mpm_draw_color low = mpm_draw_map_color(MPM_DRAW_DEEP, 0.25),
+                 high = mpm_draw_map_color(MPM_DRAW_DEEP, 0.75);
+    int left;
+    memcpy(d.window, window, sizeof window);
+    mpm_draw_canvas_init(&c, 432, 432, NULL, 0); /* the frame: 400 pixels wide, 4 to a unit */
+    equal("cut", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f), MPM_OK);
+    equal("upper body at its place", mpm_draw_pixel(&c, 216 + 80, 216 - 80), high);
+    equal("lower body at its place", mpm_draw_pixel(&c, 216 + 80, 216 + 80), low);
+    equal("nothing on the other side", mpm_draw_pixel(&c, 216 - 80, 216 + 80), 0xffffff);
+    equal("nothing outside the bodies", mpm_draw_pixel(&c, 216 + 80, 216 - 175), 0xffffff);
+    holds("a line between the bodies", mpm_draw_pixel(&c, 216 + 80, 216) != low &&
+                                                mpm_draw_pixel(&c, 216 + 80, 216) != high);
+    equal("the surface within a spacing", mpm_draw_pixel(&c, 216 + 80, 216 - 164), 0xffffff);
+    d.mirror = 1;
+    d.style = MPM_DRAW_NEAREST;
+    mpm_draw_fill(&c, 0xffffff);
+    equal("mirrored cut", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f), MPM_OK);
+    equal("the other half", mpm_draw_pixel(&c, 216 - 80, 216 + 80), low);
+    for (left = 0;
+         left < 216 && mpm_draw_pixel(&c, 215 - left, 100) == mpm_draw_pixel(&c, 216 + left, 100);)
+        left++;
+    equal("pixels that mirror each other, up to the frame", left, 199);
+    d.at = 5;
+    mpm_draw_fill(&c, 0xffffff);
+    mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f);
+    equal("the other layer, clamped", mpm_draw_pixel(&c, 216 + 80, 216 + 80),
+          mpm_draw_map_color(MPM_DRAW_DEEP, 1));
+    d.at = 2.5;
+    equal("no points in the slab", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f),
+          MPM_ERR_ARGUMENT);
+    holds("fault names it", strcmp(f.field, "points in the slab") == 0);
+    d.at = 0;
+    d.spacing = 0;
+    equal("no spacing", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f), MPM_ERR_ARGUMENT);
+    holds("fault names it", strcmp(f.field, "spacing") == 0);
+    mpm_draw_canvas_free(&c);
+
+    panels[0] = make_cut();
+    panels[0].mirror = 1;
+    panels[0].title = "two bodies";
+    panels[0].time = "t = 1 ns";
+    panels[0].label = "value";
+    panels[0].length_unit = "\xc2\xb5m";
+    panels[1] = panels[0];
+    panels[1].map = MPM_DRAW_HEAT;
+    panels[1].ticks = 1;
+    panels[1].value = NULL;
+    equal("two cuts beside each other", mpm_draw_cuts(&c, panels, 2, 2, 400, &f), MPM_OK);
+    equal("... each of its width", c.width, 800);
+    holds("... and as high as the window asks for", c.height > 440 && c.height < 520);
+    holds("... with ink in both halves",
+          darkness(&c, 0, 0, 400, c.height) > 20000 && darkness(&c, 400, 0, 800, c.height) > 20000);
+    equal("... into a file", mpm_io_png(FOLDER "/cut.png", c.rgb, c.width, c.height, "two bodies", &f), MPM_OK);
+    holds("... and back", png_matches(FOLDER "/cut.png", &c));
+    mpm_draw_canvas_free(&c);
+    equal("no panels", mpm_draw_cuts(&c, panels, 0, 2, 400, &f), MPM_ERR_ARGUMENT);
+    panels[1].spacing = 0;
+    equal("a panel without spacing", mpm_draw_cuts(&c, panels, 2, 2, 400, &f), MPM_ERR_ARGUMENT);
+}
+
+/* A cut through a world knows its bodies, their spacings and who is retired. */
+static void test_world(void)
+{
+    mpm_desc d = mpm_desc_default();
+    mpm_body_desc b = mpm_body_desc_default();
+    mpm_draw_cut_desc cut;
+    mpm_draw_canvas c;
+    mpm_world w;
+    mpm_fault f;
+    d.cell = MPM_R(0.1);
+    d.cells[0] = d.cells[1] = d.cells[2] = 10;
+    d.points = 2000;
+    d.bodies = 2;
+    equal("a world", mpm_init(&w, &d, NULL, 0), MPM_OK);
+    b.density = 1;
+    b.spacing = MPM_R(0.05);
+    b.shape = mpm_box(MPM_R(0.2), MPM_R(0.3), MPM_R(0.6), MPM_R(0.8), MPM_R(0.7), MPM_R(0.8));
+    equal("... its upper body", mpm_body_add(&w, &b), MPM_OK);
+    b.spacing = MPM_R(0.1);
+    b.shape = mpm_box(MPM_R(0.1), MPM_R(0.2), MPM_R(0.1), MPM_R(0.9), MPM_R(0.8), MPM_R(0.5));
+    equal("... its lower body", mpm_body_add(&w, &b), MPM_OK);
+    cut = mpm_draw_cut_of(&w, NULL);
+    cut.at = 0.5;
+    cut.half_thickness = 0.06;
+    cut.window[1] = cut.window[3] = 1;
+    mpm_draw_canvas_init(&c, 432, 432, NULL, 0); /* the frame: 400 pixels for the length 1 */
+    equal("cut of a world", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &cut, &f), MPM_OK);
+    holds("each body in a colour of its own",
+          mpm_draw_pixel(&c, 216, 136) != 0xffffff && mpm_draw_pixel(&c, 216, 296) != 0xffffff &&
+              mpm_draw_pixel(&c, 216, 136) != mpm_draw_pixel(&c, 216, 296));
+    equal("nothing between them", mpm_draw_pixel(&c, 216, 196), 0xffffff);
+    w.body[0].active = 0;
+    mpm_draw_fill(&c, 0xffffff);
+    equal("the upper body retired", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &cut, &f), MPM_OK);
+    equal("... is not drawn", mpm_draw_pixel(&c, 216, 136), 0xffffff);
+    mpm_draw_canvas_free(&c);
+    mpm_free(&w);
+}
+
+/* ---- numbers and ticks --------------------------------------------------------------------- */
+
+/* What printf says of a number with so many significant digits, in our spelling. */
+static void by_printf(char text[64], double value, int digits)
+{
+    char *e;
+    snprintf(text, 64, "%.*g", digits, value);
+    e = strchr(text, 'e');
+    if (e) snprintf(e + 1, (size_t)(text + 64 - e - 1), "%ld", strtol(e + 1, NULL, 10));
+}
+
+static void test_numbers(void)
+{
+    char text[64], wanted[64];
+    uint32_t random = 12345;
+    long i, bad = 0;
+    for (i = 0; i < 200000; i++) {
+        const int digits = 1 + (int)(i % 6), power = (int)(i / 6 % 41) - 20;
+        double value;
+        random = random * 1664525u + 1013904223u;
+        value = (double)(random >> 8) - 8388608; /* with ties: halves, quarters, fives */
+        value = i % 3 == 0 ? value / 64 : (i % 3 == 1 ? floor(value / 8192) * 5 : value) * pow(10, power);
+        by_printf(wanted, value, digits);
+        mpm_draw_number(text, sizeof text, value, digits);
+        if (strcmp(text, wanted) != 0 && bad++ < 5) printf("# %.17g: %s, by printf %s\n", value, text, wanted);
+    }
+    equal("numbers that printf writes otherwise", bad, 0);
+    equal("a number cut to fit", (long)mpm_draw_number(text, 4, -12345, 5), 3);
+    holds("... and terminated", strcmp(text, "-12") == 0);
+    mpm_draw_number(text, sizeof text, -INFINITY, 3);
+    holds("infinity", strcmp(text, "-inf") == 0);
+    mpm_draw_number(text, sizeof text, NAN, 3);
+    holds("not a number", strcmp(text, "nan") == 0);
+    mpm_draw_number(text, sizeof text, 0, 3);
+    holds("zero", strcmp(text, "0") == 0);
+}
+
+static void test_ticks(void)
+{
+    mpm_draw_tick ticks[MPM_DRAW_TICKS];
+    CHECK_NEAR("nice 0.28", mpm_draw_nice(0.28), 0.2, 1e-12);
+    CHECK_NEAR("nice 5", mpm_draw_nice(5), 5, 1e-12);
+    CHECK_NEAR("nice 999", mpm_draw_nice(999), 500, 1e-12);
+    equal("ticks of -1 .. 1", mpm_draw_ticks(-1, 1, 0, 6, ticks), 5);
+    holds("the first", strcmp(ticks[0].text, "-1.0") == 0);
+    holds("zero without a sign", strcmp(ticks[2].text, "0.0") == 0);
+    mpm_draw_ticks(-6, 3, 1, 6, ticks);
+    holds("powers of ten", strcmp(ticks[0].text, "10^-6") == 0);
+    mpm_draw_ticks(0, 3e6, 0, 3, ticks);
+    holds("large numbers", strcmp(ticks[1].text, "1e6") == 0);
+    mpm_draw_ticks(0.001, 0.0016, 0, 4, ticks);
+    holds("small ones with the decimals of their step", strcmp(ticks[1].text, "0.0012") == 0);
+}
+
+/* ---- scatter and plot ---------------------------------------------------------------------- */
+
+static void test_plots(void)
+{
+    static mpm_real x[200], y[200], z[200];
+    mpm_draw_curve curves[2];
+    mpm_draw_plot_desc p = mpm_draw_plot_desc_default();
+    mpm_draw_scatter_desc s = mpm_draw_scatter_desc_default();
+    mpm_draw_canvas c;
+    mpm_fault f;
+    int i;
+    for (i = 0; i < 200; i++) {
+        x[i] = (mpm_real)i / 100;
+        y[i] = (mpm_real)sin(i / 20.0);
+        z[i] = (mpm_real)cos(i / 20.0);
+    }
+    z[100] = (mpm_real)NAN;
+    memset(curves, 0, sizeof curves);
+    curves[0].name = "sine";
+    curves[0].count = 200;
+    curves[0].x = x;
+    curves[0].y = y;
+    curves[1] = curves[0];
+    curves[1].name = "cosine";
+    curves[1].y = z;
+    curves[1].mark = MPM_DRAW_DASHED;
+    curves[1].color = 1;
+    p.curves = curves;
+    p.curve_count = 2;
+    p.x_label = "time [\xc2\xb5s]";
+    p.y_label = "velocity [m/s]";
+    mpm_draw_canvas_init(&c, 800, 400, NULL, 0);
+    equal("plot", mpm_draw_plot(&c, mpm_draw_tile(&c, 2, 1, 0), &p, &f), MPM_OK);
+    holds("ink in its tile", darkness(&c, 0, 0, 400, 400) > 2000);
+    equal("none beyond it", darkness(&c, 400, 0, 800, 400), 0);
+    s.count = 200;
+    s.x = y;
+    s.y = z;
+    s.value = x;
+    s.label = "time [\xc2\xb5s]";
+    s.note = "not equal";
+    equal("scatter", mpm_draw_scatter(&c, mpm_draw_tile(&c, 2, 1, 1), &s, &f), MPM_OK);
+    holds("ink in the other tile", darkness(&c, 400, 0, 800, 400) > 2000);
+    equal("written", mpm_io_png(FOLDER "/plots.png", c.rgb, c.width, c.height, NULL, &f), MPM_OK);
+    p.log_x = p.log_y = 1;
+    equal("logarithmic, where positive", mpm_draw_plot(&c, mpm_draw_tile(&c, 2, 1, 0), &p, &f), MPM_OK);
+    curves[0].count = curves[1].count = 0;
+    equal("nothing to plot", mpm_draw_plot(&c, mpm_draw_tile(&c, 2, 1, 0), &p, &f), MPM_ERR_ARGUMENT);
+    s.count = 0;
+    equal("nothing to scatter", mpm_draw_scatter(&c, mpm_draw_tile(&c, 2, 1, 1), &s, &f),
+          MPM_ERR_ARGUMENT);
+    mpm_draw_canvas_free(&c);
+}
+
+int main(void)
+{
+    if (mpm_io_make_directory(FOLDER, NULL) < 0) return 1;
+    test_canvas();
+    test_drawing();
+    test_colours();
+    test_cut();
+    test_world();
+    test_numbers();
+    test_ticks();
+    test_plots();
+    return check_end();
+}

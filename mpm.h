@@ -316,7 +316,7 @@ typedef mpm_status (*mpm_stress_fn)(const void *material, const mpm_block *block
 
 /* Each choice stands once, as X(constant, "word", "meaning"): the enum, the checks and the option lists of the
    programs are made from it. MPM_NAMES(MPM_BASIS_LIST) is "linear|gimp". */
-#define MPM__LIST_ENUM(name, word, text) name,
+#define MPM_LIST_ENUM(name, word, text) name,
 #define MPM__NAME_BAR(name, word, text) "|" word
 #define MPM_NAMES(LIST) (&("" LIST(MPM__NAME_BAR))[1])
 
@@ -352,11 +352,11 @@ typedef mpm_status (*mpm_stress_fn)(const void *material, const mpm_block *block
     X(MPM_NORMAL_FIXED, "vertical", "along z: of two bodies the higher-numbered lies below") \
     X(MPM_NORMAL_LOGISTIC, "logistic", "of the plane that parts their points best (Nairn, Hammerquist, Smith 2020)")
 
-typedef enum mpm_geometry { MPM_GEOMETRY_LIST(MPM__LIST_ENUM) MPM_GEOMETRIES } mpm_geometry;
-typedef enum mpm_basis { MPM_BASIS_LIST(MPM__LIST_ENUM) MPM_BASES } mpm_basis;
-typedef enum mpm_side { MPM_SIDE_LIST(MPM__LIST_ENUM) MPM_SIDE_KINDS } mpm_side;
-typedef enum mpm_contact_law { MPM_CONTACT_LIST(MPM__LIST_ENUM) MPM_CONTACT_LAWS } mpm_contact_law;
-typedef enum mpm_normal_rule { MPM_NORMAL_LIST(MPM__LIST_ENUM) MPM_NORMAL_RULES } mpm_normal_rule;
+typedef enum mpm_geometry { MPM_GEOMETRY_LIST(MPM_LIST_ENUM) MPM_GEOMETRIES } mpm_geometry;
+typedef enum mpm_basis { MPM_BASIS_LIST(MPM_LIST_ENUM) MPM_BASES } mpm_basis;
+typedef enum mpm_side { MPM_SIDE_LIST(MPM_LIST_ENUM) MPM_SIDE_KINDS } mpm_side;
+typedef enum mpm_contact_law { MPM_CONTACT_LIST(MPM_LIST_ENUM) MPM_CONTACT_LAWS } mpm_contact_law;
+typedef enum mpm_normal_rule { MPM_NORMAL_LIST(MPM_LIST_ENUM) MPM_NORMAL_RULES } mpm_normal_rule;
 
 /* ---- shapes -------------------------------------------------------------------------------- */
 
@@ -1647,14 +1647,17 @@ static inline int mpm__counts_in_contact(const mpm_world *w, const mpm_contact *
     return n->mass > rule->cutoff * point && n->mass > w->desc.mass_cutoff * b->point_mass;
 }
 
+/* Whether a rule is for a first and a second body. */
+static inline int mpm__rule_fits(const mpm_rule *r, int32_t first, int32_t second)
+{
+    return (r->a < 0 || r->a == first) && (r->b < 0 || r->b == second);
+}
+
 MPM_API const mpm_contact *mpm_contact_of(const mpm_world *w, int32_t a, int32_t b)
 {
     int32_t i;
-    for (i = w->rules - 1; i >= 0; i--) {
-        const mpm_rule *r = &w->rule[i];
-        if (((r->a < 0 || r->a == a) && (r->b < 0 || r->b == b)) || ((r->a < 0 || r->a == b) && (r->b < 0 || r->b == a)))
-            return &r->contact;
-    }
+    for (i = w->rules - 1; i >= 0; i--)
+        if (mpm__rule_fits(&w->rule[i], a, b) || mpm__rule_fits(&w->rule[i], b, a)) return &w->rule[i].contact;
     return &w->desc.contact;
 }
 
@@ -1678,9 +1681,10 @@ static inline void mpm__pairs_at(mpm_world *w, int32_t i)
     int32_t a, b;
     for (b = i; b >= 0; b = w->node[b].next)
         for (a = w->node[b].next; a >= 0; a = w->node[a].next) {
-            const mpm_contact *rule = mpm_contact_of(w, w->node[a].body, w->node[b].body);
+            const mpm_node *low = &w->node[a], *high = &w->node[b];
+            const mpm_contact *rule = mpm_contact_of(w, low->body, high->body);
             mpm_pair *pair = &w->pair[w->pairs];
-            if (!mpm__counts_in_contact(w, rule, &w->node[a]) || !mpm__counts_in_contact(w, rule, &w->node[b])) continue;
+            if (!mpm__counts_in_contact(w, rule, low) || !mpm__counts_in_contact(w, rule, high)) continue;
             memset(pair, 0, sizeof *pair);
             pair->a = a;
             pair->b = b;
@@ -3232,7 +3236,10 @@ MPM_API mpm_status mpm_body_add_points(mpm_world *w, const mpm_body_desc *desc, 
 static inline void mpm__copy_point(mpm_world *w, int32_t from, int32_t to)
 {
     int f;
-    for (f = 0; f < w->fields; f++) w->field[(size_t)f * w->stride + (size_t)to] = w->field[(size_t)f * w->stride + (size_t)from];
+    for (f = 0; f < w->fields; f++) {
+        mpm_real *field = w->field + (size_t)f * w->stride;
+        field[to] = field[from];
+    }
     w->points.id[to] = w->points.id[from];
     w->points.flags[to] = w->points.flags[from];
 }

@@ -122,8 +122,8 @@ extern "C" {
     X(MPM_BOND_WEIGHTED, "weighted", "their mean weighted with N_I")                  \
     X(MPM_BOND_LITERAL, "literal", "sum D_p N_I / n: A 4.6 as printed, which practically never reaches 1")
 
-typedef enum mpm_bond_rule { MPM_BOND_RULE_LIST(MPM__LIST_ENUM) MPM_BOND_RULES } mpm_bond_rule;
-typedef enum mpm_bond_average { MPM_BOND_AVERAGE_LIST(MPM__LIST_ENUM) MPM_BOND_AVERAGES } mpm_bond_average;
+typedef enum mpm_bond_rule { MPM_BOND_RULE_LIST(MPM_LIST_ENUM) MPM_BOND_RULES } mpm_bond_rule;
+typedef enum mpm_bond_average { MPM_BOND_AVERAGE_LIST(MPM_LIST_ENUM) MPM_BOND_AVERAGES } mpm_bond_average;
 
 /* A growth rule of your own (the general A 4.1): by how much D of a surface point in contact grew in the
    last step; everything known of the point is in w->points, the step in w->dt. What is not > 0 adds nothing. */

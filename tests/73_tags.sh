@@ -81,7 +81,7 @@ function tags(text, use,   source, n, i) {
 
 # Does any header have the function? "_name" goes on from a part of the full name before it in its row.
 function exists(name, full) {
-    if (name !~ /^_/) return name in defined
+    if (name !~ /^_/) return (name in defined)
     while (sub(/_[a-z0-9]+$/, "", full))
         if ((full name) in defined) return 1
     return 0
@@ -149,5 +149,5 @@ FILENAME ~ /\.h$/ && second {
         }
     }
 }
-END { printf "%d passed, %d failed\n", passed, failed; exit failed > 0 }
+END { printf "%d passed, %d failed\n", passed, failed; exit (failed > 0) }
 ' mpm*.h docs/source_a.md docs/spray_model.md second=1 mpm*.h

@@ -1,7 +1,7 @@
 #!/bin/sh
 # From equation to function to test: prints that index for sources A and B and holds the headers to it. It fails on
 #   a tag "A 3.29", "A7" or "B 24" in a header without a row in docs/source_a.md or docs/spray_model.md,
-#   a row whose function no header has, or whose test is not there,
+#   a row whose function no header has, or whose test is not there; so too a name or test on docs/method.md,
 #   a "Test:" in a header that names no test program, or one that is not there,
 #   a public function without "Test:" in the comment above it (one comment serves a group without blank lines).
 # Run from the top folder; with -q without the index.
@@ -81,19 +81,35 @@ function tags(text, use,   source, n, i) {
 
 # Does any header have the function? "_name" goes on from a part of the full name before it in its row.
 function exists(name, full) {
-    if (name !~ /^_/) return name in defined
+    if (name !~ /^_/) return (name in defined)
     while (sub(/_[a-z0-9]+$/, "", full))
         if ((full name) in defined) return 1
     return 0
 }
 
-# First pass: the functions of the headers.
+# First pass: the functions of the headers, and all their words.
 FILENAME ~ /\.h$/ && !second {
     text = $0
-    while (match(text, /mpm_[a-z0-9_]+\(/)) {
-        defined[substr(text, RSTART, RLENGTH - 1)] = 1
+    while (match(text, /(mpm|MPM)_[A-Za-z0-9_]+\(?/)) {
+        name = substr(text, RSTART, RLENGTH)
         text = substr(text, RSTART + RLENGTH)
+        if (sub(/\($/, "", name)) defined[name] = 1
+        word[name] = 1
     }
+}
+
+# The pages speak of what there is: names in backquotes, tests by their number.
+FILENAME ~ /\.md$/ {
+    text = $0
+    while (match(text, /`(mpm|MPM)_[A-Za-z0-9_]+/)) {
+        name = substr(text, RSTART + 1, RLENGTH - 1)
+        text = substr(text, RSTART + RLENGTH)
+        if (text !~ /^\.h/) ok(name in word, FILENAME ":" FNR ": no header has " name)
+    }
+    text = $0
+    gsub(/[0-9][0-9]_[a-z0-9_]+\.(c|sh)/, "", text)
+    n = tests(text, found)
+    for (i = 1; i <= n; i++) ok(there(found[i]), FILENAME ":" FNR ": no tests/" found[i] ".c")
 }
 
 # The tables: rows of the section "Equation, function, test".
@@ -149,5 +165,5 @@ FILENAME ~ /\.h$/ && second {
         }
     }
 }
-END { printf "%d passed, %d failed\n", passed, failed; exit failed > 0 }
-' mpm*.h docs/source_a.md docs/spray_model.md second=1 mpm*.h
+END { printf "%d passed, %d failed\n", passed, failed; exit (failed > 0) }
+' mpm*.h docs/source_a.md docs/spray_model.md docs/method.md second=1 mpm*.h

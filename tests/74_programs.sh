@@ -46,7 +46,8 @@ for c in "$dir"/*.c; do
     (cd "$dir" && "./$name.run" >"$name.out" 2>&1)
     result $? "$name ends with 0: $(tail -n 1 "$dir/$name.out")"
     [ -f "$dir/$name.heading" ] || continue
-    tr '\n' ' ' <"$dir/$name.heading" | sed 's/  */ /g' | grep -oE '"[^"]*"|PBCP [0-9.]+ %' | tr -d '"' >"$dir/$name.says"
+    tr '\n' ' ' <"$dir/$name.heading" | sed 's/  */ /g' | grep -oE '"[^"]*"|PBCP [0-9.]+ %' |
+        tr -d '"' >"$dir/$name.says"
     while read -r text; do
         grep -qF -- "$text" "$dir/$name.out"
         result $? "$name prints $text"

@@ -11,20 +11,19 @@
 
    WHAT IT DOES NOT DO
      No heat conduction, no fracture, no oxide film, no implicit time integration, no threads,
-     no adaptive grid. It never prints, exits, aborts or allocates inside a step: every routine
-     that can fail returns an mpm_status and leaves the reason in an mpm_fault.
+     no adaptive grid. It never prints, exits or aborts: every routine that can fail returns an mpm_status and
+     leaves the reason in an mpm_fault. It allocates only where it was given no memory: in mpm_init, when bodies
+     are added, and in mpm_locate when the bodies spread over more nodes than there is room for.
 
    A COMPLETE PROGRAM
        #define MPM_IMPLEMENTATION
        #include "mpm.h"
        int main(void) {
            mpm_world w;
-           mpm_shape ball = mpm_sphere(0.5, 0.5, 0.5, 0.2);
            mpm_body_desc b = mpm_body_desc_default();
            mpm_desc d = mpm_desc_default();
            d.cell = 0.1; d.cells[0] = d.cells[1] = d.cells[2] = 10;
-           d.bodies = 1; d.points = mpm_shape_count(&d, &ball, 0.05);
-           b.shape = ball; b.spacing = 0.05; b.density = 1000; b.velocity[2] = 1;
+           b.shape = mpm_sphere(0.5, 0.5, 0.5, 0.2); b.spacing = 0.05; b.density = 1000; b.velocity[2] = 1;
            if (mpm_init(&w, &d, NULL, 0) != MPM_OK) return 1;
            if (mpm_body_add(&w, &b) != MPM_OK) return 1;
            while (w.time < 0.1)
@@ -32,6 +31,17 @@
            mpm_free(&w);
            return 0;
        }
+
+   CONTENTS
+     status, tools, units      mpm_status, mpm_fault; mpm_sqrt .. mpm_want, mpm_carve; mpm_units_*
+     describing                mpm_block and mpm_stress_fn; lists of choices; mpm_shape; mpm_contact; mpm_desc
+     points, bodies, grid      mpm_points, mpm_body, mpm_node, mpm_run, mpm_pair, mpm_ledger, mpm_world
+     setting up                mpm_init, mpm_body_add, mpm_body_add_points, mpm_contact_set, mpm_field_take
+     the step                  mpm_step = locate, p2g, forces, grid_update, contact_find, contact_apply, g2p,
+                               musl, stress, move
+     between the phases        mpm_support_of, mpm_push, mpm_node_push, mpm_pair_push: what extensions use
+     looking at it             mpm_body_totals
+     implementation            in the order of the step; then locate, memory, shapes, bodies, checks
 
    CONFIGURATION (define before including)
      MPM_FLOAT            GLOBAL  mpm_real is float. Public symbols then end in _f32, so that
@@ -52,7 +62,21 @@
      Order        bodies are numbered as added; the last one leads ranked contact normals, so add
                   the substrate last. Points of one body are contiguous and kept in cell order.
 
-   Equation numbers "A n" are those of source A: the thesis this library reproduces (README). */
+   WORDS
+     point        a piece of material that carries all its state; many make a body.
+     node         a corner of the grid's cells. Nodes are emptied and filled anew in every step.
+     slot         a node as one body sees it: world.node[slot]. Several bodies at a node have a slot each, in a
+                  chain from world.head.
+     pair         two slots of one node, so two bodies that meet there.
+     touch        what a slot carries besides where bodies meet.
+     base         the lowest node that a point touches.
+     run          consecutive points of a body with the same base; they share their nodes.
+     piece, lane  up to 32 points of a run, swept together; a lane is one of them.
+     block        up to MPM_BLOCK points of a body handed to its material.
+     mirror       a symmetry plane: nodes behind it are images of those before it.
+     ghost        with GIMP, the layer of nodes around the grid that points near its sides reach.
+
+   Equation numbers "A n" are those of source A: the thesis this library reproduces (README; docs/source_a.md). */
 #ifndef MPM_H
 #define MPM_H
 
@@ -511,8 +535,8 @@ typedef struct mpm_body_desc {
     mpm_stress_fn stress;    /* constitutive update, or NULL for a body without stress */
     const void *material;    /* passed to it */
     mpm_real wave_p, wave_s; /* longitudinal and shear wave speeds: time step and dampers */
-    int absorb;              /* faces with a viscous damper: MPM_FACE_BOTTOM | MPM_FACE_RIM (A 3.45) */
-    mpm_real absorb_normal, absorb_shear; /* damper factors a and b of A 3.45 (thesis: 1) */
+    int absorb;              /* faces with a viscous damper: MPM_FACE_BOTTOM | MPM_FACE_RIM (A 3.46) */
+    mpm_real absorb_normal, absorb_shear; /* damper factors a and b of A 3.46 (thesis: 1) */
     mpm_real shell;          /* thickness of the MPM_POINT_SURFACE layer in spacings */
     int32_t id;              /* number of its first point, the others count on; -1: after the last one made */
 } mpm_body_desc;
@@ -710,7 +734,7 @@ MPM_API int mpm_field_take(mpm_world *w, const char *name);
 MPM_API mpm_status mpm_reserve(mpm_world *w, void *memory, size_t bytes);
 MPM_API size_t mpm_reserve_bytes(const mpm_world *w); /* bytes that mpm_reserve wants */
 
-/* Longitudinal and shear wave speeds of an isotropic solid (A 3.37, 3.46): sqrt((lambda + 2 mu) / rho),
+/* Longitudinal and shear wave speeds of an isotropic solid (A 3.37, 3.45): sqrt((lambda + 2 mu) / rho),
    sqrt(mu / rho). E > 0, -1 < nu < 1/2. Test: 21_world. */
 MPM_API mpm_real mpm_wave_speed_p(mpm_real young, mpm_real poisson, mpm_real density);
 MPM_API mpm_real mpm_wave_speed_s(mpm_real young, mpm_real poisson, mpm_real density);
@@ -913,7 +937,8 @@ typedef struct mpm__weights {
 } mpm__weights;
 
 /* One direction: t is the distance from the base node in cells, l the half size of a GIMP point in
-   cells. k = 2: the linear hat (A 3.20). k = 3: the hat averaged over the point (uGIMP). */
+   cells. k = 2: the linear hat, 1 - |e| at e cells from the node (A 3.20). k = 3: the hat averaged over the point
+   (uGIMP): 1 - (e^2 + l^2)/(2 l) for |e| < l, 1 - |e| up to 1 - l, (1 + l - |e|)^2/(4 l) up to 1 + l. */
 MPM__KERNEL void mpm__weights_axis(mpm__weights *s, int axis, int k, const mpm_real *t, mpm_real l, mpm_real inv)
 {
     int p, i;
@@ -1235,6 +1260,7 @@ MPM_API void mpm_node_position(const mpm_world *w, const mpm_node *n, mpm_real x
 
 /* ---- to the nodes ------------------------------------------------------------------------- */
 
+/* m_I += m_p N_I and P_I += m_p v_p N_I of one run (A 3.23, 3.24); with musl v_I += m_p v_p N_I, mass left (A 3.33). */
 MPM__KERNEL void mpm__p2g_run(mpm_world *w, const mpm_run *r, int k, int ky, int musl)
 {
     const mpm_points *q = &w->points;
@@ -1272,6 +1298,7 @@ MPM_API void mpm_p2g(mpm_world *w)
         if (w->node[i].flags) mpm__constrain(w, &w->node[i], w->node[i].momentum, NULL);
 }
 
+/* f_I -= (m_p / rho_p) sigma_p . grad N_I of one run (A 3.25); in rings f_Ir -= (m_p / rho_p) sigma_hoop N_I / r_p too. */
 MPM__KERNEL void mpm__forces_run(mpm_world *w, const mpm_run *r, int k, int ky, int hoop)
 {
     const mpm_points *q = &w->points;
@@ -1829,6 +1856,7 @@ MPM_API void mpm_contact_apply(mpm_world *w)
 
 /* ---- back to the points ---------------------------------------------------------------------- */
 
+/* v_p += dt sum N_I f_I / m_I of one run (A 3.32). */
 MPM__KERNEL void mpm__g2p_run(mpm_world *w, const mpm_run *r, int k, int ky)
 {
     const mpm_real dt = w->dt;
@@ -1931,7 +1959,8 @@ MPM_API void mpm_musl(mpm_world *w)
     }
 }
 
-/* Strain and rotation increments of a piece of a run (A 3.35). */
+/* Strain and rotation increments of a piece of a run, d eps_ij = dt (dv_i/dx_j + dv_j/dx_i) / 2 with dv_i/dx_j =
+   sum v_Ii dN_I/dx_j, and half the curl of v times dt (A 3.35); in rings d eps_hoop = dt v_r / r. */
 MPM__KERNEL void mpm__strain_piece(const mpm_world *w, const mpm_run *r, int32_t at, int n, int k, int ky, int hoop,
                                    mpm_real V[3][MPM_SUPPORT], mpm_real (*e)[MPM_BLOCK],
                                    mpm_real (*spin)[MPM_BLOCK], int to)
@@ -1957,7 +1986,7 @@ MPM__KERNEL void mpm__strain_piece(const mpm_world *w, const mpm_run *r, int32_t
     }
 }
 
-/* Density (A 3.36), then the material, for points [first, first + n) whose strains are ready. */
+/* Density rho / (1 + tr d eps) (A 3.36), then the material, for points [first, first + n) whose strains are ready. */
 static inline mpm_status mpm__constitute(mpm_world *w, const mpm_body *body, int32_t first, int n,
                                          mpm_real (*e)[MPM_BLOCK], mpm_real (*spin)[MPM_BLOCK])
 {
@@ -2045,6 +2074,7 @@ MPM_API mpm_status mpm_stress(mpm_world *w)
     return MPM_OK;
 }
 
+/* x_p += dt sum N_I P_I / m_I of one run (A 3.32). */
 MPM__KERNEL void mpm__move_run(mpm_world *w, const mpm_run *r, int k, int ky)
 {
     const mpm_real dt = w->dt;

@@ -221,7 +221,8 @@ int main(int argc, char **argv)
     const int quick = argc > 1 && !strcmp(argv[1], "quick"), real = sizeof(mpm_real) == sizeof(float);
     const int same_libm = libm_bits() == libm[real];
     size_t i;
-    if (!same_libm) printf("# skip: this libm's numbers (%016llx) are not those recorded\n", (unsigned long long)libm_bits());
+    if (!same_libm)
+        printf("# skip: this libm's numbers (%016llx) are not those recorded\n", (unsigned long long)libm_bits());
     for (i = 0; i < sizeof table / sizeof *table; i++) {
         uint64_t hash;
         if (table[i].slow && quick) continue;

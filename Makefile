@@ -101,6 +101,11 @@ spray-study: build/spray_study ## source B's results again: a quarter of an hour
 bench: $(BENCH) ## speed, as ratios measured in one run
 	@for b in $(BENCH); do $$b || exit 1; done
 
+# One run of bench/step takes half a minute; N of them for each of the two.
+N ?= 5
+bench-against: ## the speed of the step beside REV=<tag or commit>: N=5 runs of each in turns, ratio of medians
+	@sh bench/against.sh $(or $(REV),$(error REV=<tag or commit>)) $(N) "$(CC)" $(CFLAGS)
+
 footprint: ## what each header costs - code, stack, memory, compile time: the table in README.md (5 minutes)
 	sh bench/footprint.sh "$(CC)"
 
@@ -108,7 +113,7 @@ footprint: ## what each header costs - code, stack, memory, compile time: the ta
 # The library has no code of its own to install, so all but the headers goes under share/. DESTDIR goes in front.
 INCLUDE_TO = $(DESTDIR)$(PREFIX)/include
 SHARE_TO   = $(DESTDIR)$(PREFIX)/share
-install: ## headers, mpm.c and mpm.pc under PREFIX=/usr/local; packagers: DESTDIR= (CMake's package: see CMakeLists.txt)
+install: ## headers, mpm.c and mpm.pc under PREFIX=/usr/local; packagers: DESTDIR=
 	mkdir -p $(INCLUDE_TO) $(SHARE_TO)/mpm $(SHARE_TO)/pkgconfig
 	install -m 644 $(HEADERS) $(INCLUDE_TO)
 	install -m 644 mpm.c LICENSE $(SHARE_TO)/mpm
@@ -130,4 +135,4 @@ dist: build/mpm_all.h ## a release: build/mpm-VERSION.tar.gz, and build/mpm_all.
 clean: ## removes build/
 	rm -rf build
 
-.PHONY: all help run test verify impacts reproduction spray-study bench footprint install uninstall dist clean
+.PHONY: all help run test verify impacts reproduction spray-study bench bench-against footprint install uninstall dist clean

@@ -102,7 +102,7 @@ table() {
     core_data=$(section "$dir/mpm.h.o" '^[.](ro)?data')
     for h in mpm_*.h; do row "$h" "$core_code" "$core_data"; done
     set -- $(bytes "") $(bytes -DMPM_FLOAT)
-    printf '\nMemory in bytes, double and float: a point %s and %s, a node of a body %s and %s, a particle of the spray %s and %s.\n' \
+    printf '\nMemory in bytes, double and float: a point %s and %s, a node of a body with its run and pair %s and %s, a particle of the spray %s and %s.\n' \
         "$1" "$4" "$2" "$5" "$3" "$6"
 }
 

@@ -1298,7 +1298,8 @@ MPM_API void mpm_p2g(mpm_world *w)
         if (w->node[i].flags) mpm__constrain(w, &w->node[i], w->node[i].momentum, NULL);
 }
 
-/* f_I -= (m_p / rho_p) sigma_p . grad N_I of one run (A 3.25); in rings f_Ir -= (m_p / rho_p) sigma_hoop N_I / r_p too. */
+/* f_I -= (m_p / rho_p) sigma_p . grad N_I of one run (A 3.25); in rings f_Ir -= (m_p / rho_p) sigma_hoop N_I / r_p
+   too. */
 MPM__KERNEL void mpm__forces_run(mpm_world *w, const mpm_run *r, int k, int ky, int hoop)
 {
     const mpm_points *q = &w->points;

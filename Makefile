@@ -106,6 +106,11 @@ N ?= 5
 bench-against: ## the speed of the step beside REV=<tag or commit>: N=5 runs of each in turns, ratio of medians
 	@sh bench/against.sh $(or $(REV),$(error REV=<tag or commit>)) $(N) "$(CC)" $(CFLAGS)
 
+figures: ## the figures of docs/method.md
+	@mkdir -p build
+	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) docs/figures.c -o build/figures $(LDFLAGS) -lm
+	build/figures
+
 footprint: ## what each header costs - code, stack, memory, compile time: the table in README.md (5 minutes)
 	sh bench/footprint.sh "$(CC)"
 
@@ -135,4 +140,4 @@ dist: build/mpm_all.h ## a release: build/mpm-VERSION.tar.gz, and build/mpm_all.
 clean: ## removes build/
 	rm -rf build
 
-.PHONY: all help run test verify impacts reproduction spray-study bench bench-against footprint install uninstall dist clean
+.PHONY: all help run test verify impacts reproduction spray-study bench bench-against footprint figures install uninstall dist clean

@@ -276,7 +276,8 @@ static inline void *mpm_carve(char *base, size_t *used, size_t n, size_t size)
    Returns the new length. */
 static inline size_t mpm_append(char *buffer, size_t n, size_t used, const char *text)
 {
-    while (*text && used + 1 < n) buffer[used++] = *text++;
+    size_t i;
+    for (i = 0; used + 1 < n && text[i]; i++) buffer[used++] = text[i];
     if (n) buffer[used] = 0;
     return used;
 }

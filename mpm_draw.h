@@ -327,7 +327,8 @@ MPM_API size_t mpm_draw_number(char *buffer, size_t n, double value, int digits)
     int exponent, wanted = digits;
     double size = fabs(value), whole;
     if (value != value) return mpm_append(buffer, n, 0, "nan");
-    if (value - value != 0) return mpm_append(buffer, n, 0, value > 0 ? "inf" : "-inf");
+    if (value - value != 0 && value > 0) return mpm_append(buffer, n, 0, "inf");
+    if (value - value != 0) return mpm_append(buffer, n, 0, "-inf");
     if (!(size > 1e-290)) return mpm_append(buffer, n, 0, "0");
     whole = mpm__draw_leading(size, digits, &exponent);
     for (; digits > 1 && fmod(whole, 10) < 0.5; digits--) whole /= 10;

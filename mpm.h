@@ -2771,19 +2771,29 @@ MPM_API mpm_shape mpm_shape_user(mpm_inside_fn inside, void *context, const mpm_
     return s;
 }
 
-/* Whether a shape of the user's contains x and all that lies `shrink` beside it, along axes and diagonals. */
+/* Whether a shape of the user's contains x: in its box, and by its function. */
+static inline int mpm__contains_own(const mpm_shape *s, const mpm_real *x, int flat)
+{
+    int d;
+    for (d = 0; d < 3; d++) {
+        const mpm_real q = (d == 1 && flat) ? 0 : (x[d] - s->center[d]) / s->half[d];
+        if (!(q >= -1 && q <= 1)) return 0;
+    }
+    return s->inside(s->context, x);
+}
+
+/* ... and all that lies `shrink` away from it, along axes and diagonals. */
 static inline int mpm__contains_user(const mpm_shape *s, const mpm_real *x, int flat, mpm_real shrink)
 {
-    int i, beside = shrink > 0 ? 1 : 0;
-    mpm_real at[3];
+    int i, d;
     for (i = 0; i < 27; i++) {
-        const int step[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
-        if (!beside && i != 13) continue;
-        if (flat && step[1]) continue;
-        at[0] = x[0] + (mpm_real)step[0] * shrink;
-        at[1] = flat ? 0 : x[1] + (mpm_real)step[1] * shrink;
-        at[2] = x[2] + (mpm_real)step[2] * shrink;
-        if (!s->inside(s->context, at)) return 0;
+        const int way[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+        const int square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+        const mpm_real part = square > 1 ? shrink / mpm_sqrt((mpm_real)square) : shrink;
+        mpm_real at[3];
+        if ((square && !(shrink > 0)) || (flat && way[1])) continue;
+        for (d = 0; d < 3; d++) at[d] = d == 1 && flat ? 0 : x[d] + (mpm_real)way[d] * part;
+        if (!mpm__contains_own(s, at, flat)) return 0;
     }
     return 1;
 }
@@ -2793,8 +2803,9 @@ static inline int mpm__contains(const mpm_shape *s, const mpm_real *x, int flat,
 {
     mpm_real q[3];
     int d;
+    if (s->kind == MPM_SHAPE_USER) return mpm__contains_user(s, x, flat, shrink);
     for (d = 0; d < 3; d++) {
-        mpm_real half = s->half[d] - (s->kind == MPM_SHAPE_USER ? 0 : shrink);
+        mpm_real half = s->half[d] - shrink;
         if (half <= 0) return 0;
         q[d] = (d == 1 && flat) ? 0 : (x[d] - s->center[d]) / half;
     }
@@ -2802,9 +2813,6 @@ static inline int mpm__contains(const mpm_shape *s, const mpm_real *x, int flat,
     case MPM_SHAPE_ELLIPSOID: return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] <= 1;
     case MPM_SHAPE_CYLINDER: return q[0] * q[0] + q[1] * q[1] <= 1 && q[2] >= -1 && q[2] <= 1;
     case MPM_SHAPE_BOX: return q[0] >= -1 && q[0] <= 1 && q[1] >= -1 && q[1] <= 1 && q[2] >= -1 && q[2] <= 1;
-    case MPM_SHAPE_USER:
-        return q[0] >= -1 && q[0] <= 1 && q[1] >= -1 && q[1] <= 1 && q[2] >= -1 && q[2] <= 1 &&
-               mpm__contains_user(s, x, flat, shrink);
     default: return 0;
     }
 }

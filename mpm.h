@@ -673,10 +673,11 @@ MPM_API mpm_status mpm_init(mpm_world *w, const mpm_desc *d, void *memory, size_
 /* Gives back what MPM_MALLOC gave. Safe on a world whose mpm_init failed. Test: 21_world. */
 MPM_API void mpm_free(mpm_world *w);
 
-/* Fills a shape with points. Numbered in the order of the calls; add the substrate last.
-   MPM_ERR_ARGUMENT / NAN: a field of b; MPM_ERR_OUTSIDE: a point outside the grid (points beyond a
-   symmetry plane are cut off instead); MPM_ERR_OVERLAP: with body fault.index; MPM_ERR_FULL; MPM_ERR_MEMORY. On
-   failure the world is unchanged. Test: 21_world. */
+/* Fills a shape with points, before the first step or between steps. Numbered in the order of the calls; add the
+   substrate last. MPM_ERR_ARGUMENT / NAN: a field of b; MPM_ERR_OUTSIDE: a point outside the grid (points beyond a
+   symmetry plane are cut off instead); MPM_ERR_OVERLAP: with body fault.index, of whose points one lies in the shape,
+   or (before the first step) whose shape holds a new one; MPM_ERR_FULL; MPM_ERR_MEMORY. On failure the world is
+   unchanged. Test: 21_world, 26_extend. */
 MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *b);
 
 /* A body of given points: b says what the cloud leaves open, its shape is not read, so that it can have no
@@ -3006,12 +3007,12 @@ static inline void mpm__areas(const mpm_desc *d, mpm_body *b)
     }
 }
 
-/* The body whose shape contains x, or -1. */
-static inline int32_t mpm__body_at(const mpm_world *w, const mpm_real *x)
+/* The body, other than `own`, whose shape contains x, or -1. After the first step bodies are elsewhere. */
+static inline int32_t mpm__body_at(const mpm_world *w, const mpm_real *x, int32_t own)
 {
     int32_t b;
-    for (b = 0; b < w->bodies; b++)
-        if (mpm__contains(&w->body[b].desc.shape, x, mpm__flat(&w->desc), 0)) return b;
+    for (b = 0; b < w->bodies && w->steps == 0; b++)
+        if (b != own && mpm__contains(&w->body[b].desc.shape, x, mpm__flat(&w->desc), 0)) return b;
     return -1;
 }
 
@@ -3045,14 +3046,14 @@ static inline void mpm__put_point(mpm_world *w, const mpm_body_desc *d, int32_t 
     p->flags[i] = flags;
 }
 
-/* Whether a point may be placed at x: inside the grid, in no body's shape. */
-static inline mpm_status mpm__place_check(const mpm_world *w, const mpm_real *x, long index, mpm_fault *f)
+/* Whether a point of body `own` may be placed at x: inside the grid, in no other body's shape. */
+static inline mpm_status mpm__place_check(const mpm_world *w, int32_t own, const mpm_real *x, long index, mpm_fault *f)
 {
     static const char *const name[3] = {"x of a point", "y of a point", "z of a point"};
     const int a = mpm__axis_outside(&w->desc, x);
     int32_t other;
     if (a >= 0) return mpm_fail(f, MPM_ERR_OUTSIDE, name[a], x[a], index);
-    if ((other = mpm__body_at(w, x)) >= 0)
+    if ((other = mpm__body_at(w, x, own)) >= 0)
         return mpm_fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
     return MPM_OK;
 }
@@ -3066,7 +3067,7 @@ static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
     mpm_status s;
     mpm_real x[3];
     while (mpm__lattice_next(&l, &w->desc, &d->shape, x)) {
-        if ((s = mpm__place_check(w, x, w->bodies, f)) != MPM_OK) return s;
+        if ((s = mpm__place_check(w, w->bodies, x, w->bodies, f)) != MPM_OK) return s;
         mpm__put_point(w, d, i++, x, mpm__point_mass(&w->desc, d, x), mpm__flags(d, x, mpm__flat(&w->desc)));
     }
     b->count = i - w->points.count;
@@ -3172,7 +3173,9 @@ static inline void mpm__cloud_place(const mpm_world *w, const mpm_cloud *c, int3
     for (a = 0; a < 3; a++) x[a] = a == 1 && mpm__flat(&w->desc) ? 0 : mpm__given(c->x[a], i, 0);
 }
 
-static inline mpm_status mpm__cloud_check(const mpm_world *w, const mpm_body_desc *d, const mpm_cloud *c, mpm_fault *f)
+/* Whether the points of a cloud may join body `own`, described by d. */
+static inline mpm_status mpm__cloud_check(const mpm_world *w, int32_t own, const mpm_body_desc *d, const mpm_cloud *c,
+                                          mpm_fault *f)
 {
     mpm_real x[3], mass;
     mpm_status s = mpm_want(c->count >= 1, f, "points", (mpm_real)c->count, -1);
@@ -3186,7 +3189,7 @@ static inline mpm_status mpm__cloud_check(const mpm_world *w, const mpm_body_des
             s = mpm_want(1, f, "x of a point", x[a], i);
             if (s == MPM_OK) s = mpm_want(1, f, "v of a point", mpm__given(c->v[a], i, 0), i);
         }
-        if (s == MPM_OK) s = mpm__place_check(w, x, i, f);
+        if (s == MPM_OK) s = mpm__place_check(w, own, x, i, f);
         if (s != MPM_OK) return s;
         mass = mpm__cloud_mass(w, d, c, i, x);
         s = mpm_want(mass > 0, f, "mass of a point", mass, i);
@@ -3227,7 +3230,7 @@ MPM_API mpm_status mpm_body_add_points(mpm_world *w, const mpm_body_desc *desc, 
     mpm_status s;
     memset(&b, 0, sizeof b);
     if ((s = mpm__body_check(w, desc, f)) != MPM_OK || (s = mpm__absorb_check(desc, 0, f)) != MPM_OK ||
-        (s = mpm__cloud_check(w, desc, c, f)) != MPM_OK || (s = mpm__room(w, c->count, 1, 0, 0)) != MPM_OK)
+        (s = mpm__cloud_check(w, w->bodies, desc, c, f)) != MPM_OK || (s = mpm__room(w, c->count, 1, 0, 0)) != MPM_OK)
         return s;
     b.desc = *desc;
     b.desc.shape = mpm__cloud_extent(w, c, desc->spacing);
@@ -3288,7 +3291,7 @@ MPM_API mpm_status mpm_points_add(mpm_world *w, int32_t body, const mpm_cloud *c
     mpm_fault *f = &w->fault;
     int32_t i;
     mpm_status s = mpm_want(body >= 0 && body < w->bodies, f, "body", (mpm_real)body, -1);
-    if (s != MPM_OK || (s = mpm__cloud_check(w, &w->body[body].desc, c, f)) != MPM_OK ||
+    if (s != MPM_OK || (s = mpm__cloud_check(w, body, &w->body[body].desc, c, f)) != MPM_OK ||
         (s = mpm__room(w, c->count, 0, 0, 0)) != MPM_OK)
         return s;
     mpm__grid_reset(w);

@@ -3074,11 +3074,19 @@ static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
     return MPM_OK;
 }
 
+/* The mean mass of the points of a body, which has some. */
+static inline void mpm__mean_mass(const mpm_world *w, mpm_body *b)
+{
+    double mass = 0;
+    int32_t i;
+    for (i = b->first; i < b->first + b->count; i++) mass += (double)w->points.mass[i];
+    if (b->count > 0) b->point_mass = (mpm_real)(mass / b->count);
+}
+
 /* Sums of the points just written, and their numbers. */
 static inline void mpm__body_sums(mpm_world *w, mpm_body *b)
 {
     const mpm_points *p = &w->points;
-    double mass = 0;
     int32_t i;
     b->first = w->points.count;
     b->active = b->count;
@@ -3086,10 +3094,9 @@ static inline void mpm__body_sums(mpm_world *w, mpm_body *b)
     for (i = b->first; i < b->first + b->count; i++) {
         if (p->flags[i] & MPM_FACE_BOTTOM) b->mass[0] += p->mass[i];
         if (p->flags[i] & MPM_FACE_RIM) b->mass[1] += p->mass[i];
-        mass += (double)p->mass[i];
         p->id[i] = w->next_id++;
     }
-    b->point_mass = (mpm_real)(mass / b->count);
+    mpm__mean_mass(w, b);
 }
 
 /* A body added earlier may stick into the new one without the reverse. */
@@ -3303,6 +3310,7 @@ MPM_API mpm_status mpm_points_add(mpm_world *w, int32_t body, const mpm_cloud *c
         w->body[body].active++;
         w->points.count++;
     }
+    mpm__mean_mass(w, &w->body[body]);
     w->sorted_runs = 0;
     return MPM_OK;
 }
@@ -3315,6 +3323,7 @@ MPM_API mpm_status mpm_point_take(mpm_world *w, int32_t i)
     mpm__grid_reset(w);
     while (i >= w->body[b].first + w->body[b].count) b++;
     mpm__close_place(w, b, i);
+    mpm__mean_mass(w, &w->body[b]);
     return MPM_OK;
 }
 

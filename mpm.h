@@ -494,7 +494,8 @@ typedef struct mpm_cloud {
     const mpm_real *x[3];     /* position; x[1] may be NULL in two dimensions */
     const mpm_real *v[3];     /* velocity; NULL: the body's */
     const mpm_real *mass;     /* in axisymmetry of the whole ring; NULL: volume times the body's density */
-    const mpm_real *volume;   /* NULL: a cube, square or ring section of the body's spacing */
+    const mpm_real *volume;   /* NULL: a cube, square or ring section of the body's spacing. Where mass and volume are
+                                 given, the density is the one over the other, else the body's */
     const uint8_t *flags;     /* MPM_POINT_SURFACE ...; NULL: 0, so that none bonds */
 } mpm_cloud;
 
@@ -3198,8 +3199,9 @@ static inline mpm_status mpm__cloud_check(const mpm_world *w, int32_t own, const
         }
         if (s == MPM_OK) s = mpm__place_check(w, own, x, i, f);
         if (s != MPM_OK) return s;
+        if (c->volume) s = mpm_want(c->volume[i] > 0, f, "volume of a point", c->volume[i], i);
         mass = mpm__cloud_mass(w, d, c, i, x);
-        s = mpm_want(mass > 0, f, "mass of a point", mass, i);
+        if (s == MPM_OK) s = mpm_want(mass > 0, f, "mass of a point", mass, i);
     }
     return s;
 }
@@ -3212,6 +3214,7 @@ static inline void mpm__put_cloud(mpm_world *w, const mpm_body_desc *d, const mp
     mpm__cloud_place(w, c, i, x);
     mpm__put_point(w, d, to, x, mpm__cloud_mass(w, d, c, i, x), (uint8_t)(c->flags ? c->flags[i] : 0));
     for (a = 0; a < 3; a++) w->points.v[a][to] = mpm__given(c->v[a], i, d->velocity[a]);
+    if (c->mass && c->volume) w->points.density[to] = c->mass[i] / c->volume[i];
 }
 
 /* The box around a cloud, half a spacing wide of it, as a shape that contains nothing. */

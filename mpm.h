@@ -3126,11 +3126,11 @@ static inline mpm_status mpm__body_join(mpm_world *w, mpm_body *b)
     w->points.count += b->count;
     w->sorted_runs = 0;
     s = mpm__locate(w);
-    if (s == MPM_OK && w->owns_work && w->nodes + w->nodes / 2 > w->node_capacity) {
+    if (s >= 0 && w->owns_work && w->nodes + w->nodes / 2 > w->node_capacity) {
         s = mpm_reserve(w, NULL, 0);
         if (s == MPM_OK) s = mpm__locate(w);
     }
-    if (s >= 0) return s;
+    if (s >= 0) return MPM_OK; /* points of other bodies may have left: see w->retired */
     w->bodies--;
     w->points.count -= b->count;
     w->next_id = next_id;

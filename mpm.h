@@ -694,8 +694,8 @@ MPM_API mpm_status mpm_points_add(mpm_world *w, int32_t body, const mpm_cloud *p
    MPM_ERR_ARGUMENT: there is none. Test: 26_extend. */
 MPM_API mpm_status mpm_point_take(mpm_world *w, int32_t i);
 
-/* The rule of contact between bodies a and b, in any order, -1 for any body: of several that fit, the one set
-   last. Bodies need not be there yet. MPM_ERR_ARGUMENT / NAN: a field of the rule; MPM_ERR_FULL: desc.rules; in
+/* The rule of contact between bodies a and b, in any order, -1 for any body, between steps: of several that fit, the
+   one set last; set again for the same two, it replaces theirs. Bodies need not be there yet. MPM_ERR_ARGUMENT / NAN: a field of the rule; MPM_ERR_FULL: desc.rules; in
    caller's memory logistic normals must stand in desc.contact too, for their room. Test: 26_extend. */
 MPM_API mpm_status mpm_contact_set(mpm_world *w, int32_t a, int32_t b, const mpm_contact *rule);
 
@@ -2691,16 +2691,36 @@ MPM_API int mpm_field_take(mpm_world *w, const char *name)
     return f;
 }
 
+/* Room for the planes of logistic normals. */
+static inline mpm_status mpm__plane_room(mpm_world *w)
+{
+    mpm_status s;
+    if (w->planes) return MPM_OK;
+    if (!w->owns_work) return mpm_fail(&w->fault, MPM_ERR_FULL, "planes of logistic normals", 0, -1);
+    w->planes = 1;
+    s = mpm_reserve(w, NULL, 0);
+    if (s != MPM_OK) w->planes = 0;
+    return s;
+}
+
+/* Takes the rule of a and b out, if they have one. */
+static inline void mpm__rule_drop(mpm_world *w, int32_t a, int32_t b)
+{
+    int32_t i, kept = 0;
+    for (i = 0; i < w->rules; i++) {
+        const mpm_rule r = w->rule[i];
+        if (!(r.a == a && r.b == b) && !(r.a == b && r.b == a)) w->rule[kept++] = r;
+    }
+    w->rules = kept;
+}
+
 MPM_API mpm_status mpm_contact_set(mpm_world *w, int32_t a, int32_t b, const mpm_contact *rule)
 {
     mpm_status s = mpm_contact_check(rule, &w->fault);
-    if (s == MPM_OK && rule->normal == MPM_NORMAL_LOGISTIC && !w->planes) {
-        if (!w->owns_work) return mpm_fail(&w->fault, MPM_ERR_FULL, "planes of logistic normals", 0, -1);
-        w->planes = 1;
-        s = mpm_reserve(w, NULL, 0);
-    }
-    if (s == MPM_OK) s = mpm__room(w, 0, 0, 1, 0);
+    if (s == MPM_OK && rule->normal == MPM_NORMAL_LOGISTIC) s = mpm__plane_room(w);
     if (s != MPM_OK) return s;
+    mpm__rule_drop(w, a, b);
+    if ((s = mpm__room(w, 0, 0, 1, 0)) != MPM_OK) return s; /* none was dropped, or there is room */
     w->rule[w->rules].a = a;
     w->rule[w->rules].b = b;
     w->rule[w->rules++].contact = *rule;

@@ -538,7 +538,7 @@ typedef struct mpm_node {
     mpm_real momentum[3];  /* at k, then k+1 */
     mpm_real force[3];     /* internal + external + contact */
     mpm_real velocity[3];  /* at k+1, mapped back from the updated points (MUSL) */
-    mpm_real reaction[3];  /* momentum given from outside in this step: walls, mpm_node_push */
+    mpm_real reaction[3];  /* momentum given from outside in this step: walls, mpm_push, mpm_node_push */
     int32_t index;         /* number of the node in the grid */
     int32_t next;          /* next slot of this node, or -1 */
     int32_t body;
@@ -593,8 +593,8 @@ typedef struct mpm_ledger {
     double absorbed;     /* energy taken by the viscous dampers */
     double contact;      /* energy lost in contact: nodal impact and friction */
     double hold;         /* energy lost in holding pairs: bonds */
-    double walls;        /* energy lost at rigid walls; less what mpm_node_push brought in */
-    double work;         /* done by gravity and by mpm_push */
+    double walls;        /* energy lost at rigid walls; less what mpm_push and mpm_node_push brought in */
+    double work;         /* done by gravity */
     double impulse[3];   /* momentum brought in by all but contact: dampers, sides, mirror images, gravity, pushes */
 } mpm_ledger;
 
@@ -791,8 +791,9 @@ MPM_API void mpm_support_of(const mpm_world *w, const mpm_run *run, int32_t i, m
 /* The grid's velocity at the point, sum N_I P_I / m_I. After mpm_p2g. Test: 26_extend. */
 MPM_API void mpm_support_velocity(const mpm_world *w, const mpm_support *s, mpm_real v[3]);
 
-/* An outer force f on a point, N_I f to its nodes: body forces, tractions. Impulse and work, f dt . (v + f dt / 2m)
-   with the grid's v, go to the ledger. Between mpm_p2g and mpm_grid_update. Test: 26_extend. */
+/* An outer force f on a point, N_I f to its nodes: body forces, tractions. What sides forbid is taken out of f; the
+   rest is in the ledger: in `impulse`, its work in `walls` (negative: brought in). Between mpm_p2g and
+   mpm_grid_update. Test: 26_extend. */
 MPM_API void mpm_push(mpm_world *w, const mpm_support *s, const mpm_real f[3]);
 
 /* Momentum j to a slot from outside: rigid tools, prescribed velocities. What sides forbid is taken out of j; the
@@ -1209,12 +1210,14 @@ MPM_API void mpm_push(mpm_world *w, const mpm_support *s, const mpm_real f[3])
     int a, d;
     for (a = 0; a < s->count; a++) {
         mpm_node *n = &w->node[s->slot[a]];
+        mpm_real j[3];
         if (!(n->mass > w->desc.mass_cutoff * w->body[n->body].point_mass)) continue;
+        for (d = 0; d < 3; d++) j[d] = s->N[a] * mpm__image(s, a, d) * f[d] * w->dt;
+        mpm__constrain(w, n, j, NULL);
         for (d = 0; d < 3; d++) {
-            const mpm_real j = s->N[a] * mpm__image(s, a, d) * f[d] * w->dt;
-            n->force[d] += j / w->dt;
-            w->ledger.impulse[d] += (double)j;
-            w->ledger.work += (double)(j * (n->momentum[d] + j / 2) / n->mass);
+            n->force[d] += j[d] / w->dt;
+            n->reaction[d] += j[d];
+            w->ledger.impulse[d] += (double)j[d];
         }
     }
 }

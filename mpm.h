@@ -1384,7 +1384,6 @@ MPM_API void mpm_forces(mpm_world *w)
                 mpm_node *n = &w->node[i];
                 n->force[d] += n->mass * g[d];
                 w->ledger.impulse[d] += (double)(n->mass * g[d] * dt);
-                w->ledger.work += (double)((n->momentum[d] + MPM_R(0.5) * n->mass * g[d] * dt) * g[d] * dt);
             }
 }
 
@@ -1885,6 +1884,23 @@ static inline mpm_real mpm__mean_velocity(const mpm_node *n, int d, mpm_real dt)
     return MPM_R(0.5) * ((n->momentum[d] - n->force[d] * dt) / n->mass + n->velocity[d]);
 }
 
+/* Work of gravity, where sides let nodes move. */
+static inline void mpm__account_gravity(mpm_world *w)
+{
+    const mpm_real *g = w->desc.gravity, dt = w->dt;
+    int32_t i;
+    int d;
+    if (!(g[0] < 0 || g[0] > 0 || g[1] < 0 || g[1] > 0 || g[2] < 0 || g[2] > 0)) return;
+    for (i = 0; i < w->nodes; i++) {
+        const mpm_node *n = &w->node[i];
+        mpm_real j[3];
+        if (!(n->mass > 0)) continue;
+        for (d = 0; d < 3; d++) j[d] = n->mass * g[d] * dt;
+        if (n->flags) mpm__constrain(w, n, j, NULL);
+        for (d = 0; d < 3; d++) w->ledger.work += (double)(j[d] * mpm__mean_velocity(n, d, dt));
+    }
+}
+
 /* Energy lost in contact, in bonds and at walls. */
 static inline void mpm__account(mpm_world *w)
 {
@@ -1920,6 +1936,7 @@ MPM_API void mpm_musl(mpm_world *w)
         for (d = 0; d < 3; d++) n->velocity[d] = n->mass > 0 ? n->velocity[d] / n->mass : 0;
     }
     mpm__account(w);
+    mpm__account_gravity(w);
     for (i = 0; i < w->nodes; i++) {
         mpm_node *n = &w->node[i];
         int s;

@@ -815,8 +815,8 @@ MPM_API mpm_real mpm_pair_stick(const mpm_world *w, const mpm_pair *p, mpm_real 
    |sum m grad N . n| / initial density. In a quarter model it is a quarter. Test: 30_bond. */
 MPM_API double mpm_pair_area(const mpm_world *w, const mpm_pair *p);
 
-/* Momentum j to a and -j to b, as contact laws give it: kept in pair.impulse for the ledger. Between
-   mpm_contact_find and mpm_g2p. Test: 26_extend. */
+/* Momentum j to a and -j to b, as contact laws give it, less what sides forbid: kept in pair.impulse for the ledger.
+   Between mpm_contact_find and mpm_g2p. Test: 26_extend. */
 MPM_API void mpm_pair_push(mpm_world *w, mpm_pair *p, const mpm_real j[3]);
 
 /* ---- looking at it ------------------------------------------------------------------------- */
@@ -1760,13 +1760,16 @@ MPM_API double mpm_pair_area(const mpm_world *w, const mpm_pair *p)
 MPM_API void mpm_pair_push(mpm_world *w, mpm_pair *p, const mpm_real j[3])
 {
     mpm_node *a = &w->node[p->a], *b = &w->node[p->b];
+    mpm_real to[3];
     int d;
+    for (d = 0; d < 3; d++) to[d] = j[d];
+    mpm__constrain(w, a, to, NULL);
     for (d = 0; d < 3; d++) {
-        p->impulse[d] += j[d];
-        a->momentum[d] += j[d];
-        b->momentum[d] -= j[d];
-        a->force[d] += j[d] / w->dt;
-        b->force[d] -= j[d] / w->dt;
+        p->impulse[d] += to[d];
+        a->momentum[d] += to[d];
+        b->momentum[d] -= to[d];
+        a->force[d] += to[d] / w->dt;
+        b->force[d] -= to[d] / w->dt;
     }
 }
 
@@ -1821,7 +1824,6 @@ MPM_API void mpm_contact_apply(mpm_world *w)
         mpm_pair *p = &w->pair[i];
         mpm_real j[3];
         if (!mpm__contact_impulse(w, p, j)) continue;
-        mpm__constrain(w, &w->node[p->a], j, NULL);
         mpm_pair_push(w, p, j);
         w->held += p->held;
     }

@@ -695,8 +695,9 @@ MPM_API mpm_status mpm_points_add(mpm_world *w, int32_t body, const mpm_cloud *p
 MPM_API mpm_status mpm_point_take(mpm_world *w, int32_t i);
 
 /* The rule of contact between bodies a and b, in any order, -1 for any body, between steps: of several that fit, the
-   one set last; set again for the same two, it replaces theirs. Bodies need not be there yet. MPM_ERR_ARGUMENT / NAN: a field of the rule; MPM_ERR_FULL: desc.rules; in
-   caller's memory logistic normals must stand in desc.contact too, for their room. Test: 26_extend. */
+   one set last; set again for the same two, it replaces theirs. Bodies need not be there yet. MPM_ERR_ARGUMENT / NAN:
+   a field of the rule; MPM_ERR_FULL: desc.rules; in caller's memory logistic normals must stand in desc.contact too,
+   for their room. Test: 26_extend. */
 MPM_API mpm_status mpm_contact_set(mpm_world *w, int32_t a, int32_t b, const mpm_contact *rule);
 
 /* The rule that bodies a and b meet by. Test: 26_extend. */
@@ -1656,8 +1657,8 @@ MPM_API const mpm_contact *mpm_contact_of(const mpm_world *w, int32_t a, int32_t
     int32_t i;
     for (i = w->rules - 1; i >= 0; i--) {
         const mpm_rule *r = &w->rule[i];
-        if (((r->a < 0 || r->a == a) && (r->b < 0 || r->b == b)) || ((r->a < 0 || r->a == b) && (r->b < 0 || r->b == a)))
-            return &r->contact;
+        const int so = (r->a < 0 || r->a == a) && (r->b < 0 || r->b == b);
+        if (so || ((r->a < 0 || r->a == b) && (r->b < 0 || r->b == a))) return &r->contact;
     }
     return &w->desc.contact;
 }
@@ -1684,7 +1685,8 @@ static inline void mpm__pairs_at(mpm_world *w, int32_t i)
         for (a = w->node[b].next; a >= 0; a = w->node[a].next) {
             const mpm_contact *rule = mpm_contact_of(w, w->node[a].body, w->node[b].body);
             mpm_pair *pair = &w->pair[w->pairs];
-            if (!mpm__counts_in_contact(w, rule, &w->node[a]) || !mpm__counts_in_contact(w, rule, &w->node[b])) continue;
+            if (!mpm__counts_in_contact(w, rule, &w->node[a])) continue;
+            if (!mpm__counts_in_contact(w, rule, &w->node[b])) continue;
             memset(pair, 0, sizeof *pair);
             pair->a = a;
             pair->b = b;
@@ -3295,7 +3297,10 @@ MPM_API mpm_status mpm_body_add_points(mpm_world *w, const mpm_body_desc *desc, 
 static inline void mpm__copy_point(mpm_world *w, int32_t from, int32_t to)
 {
     int f;
-    for (f = 0; f < w->fields; f++) w->field[(size_t)f * w->stride + (size_t)to] = w->field[(size_t)f * w->stride + (size_t)from];
+    for (f = 0; f < w->fields; f++) {
+        mpm_real *array = w->field + (size_t)f * w->stride;
+        array[to] = array[from];
+    }
     w->points.id[to] = w->points.id[from];
     w->points.flags[to] = w->points.flags[from];
 }

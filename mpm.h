@@ -519,7 +519,8 @@ typedef struct mpm_cloud {
     const mpm_real *x[3];     /* position; x[1] may be NULL in two dimensions */
     const mpm_real *v[3];     /* velocity; NULL: the body's */
     const mpm_real *mass;     /* in axisymmetry of the whole ring; NULL: volume times the body's density */
-    const mpm_real *volume;   /* NULL: a cube, square or ring section of the body's spacing */
+    const mpm_real *volume;   /* NULL: a cube, square or ring section of the body's spacing. Where mass and volume are
+                                 given, the density is the one over the other, else the body's */
     const uint8_t *flags;     /* MPM_POINT_SURFACE ...; NULL: 0, so that none bonds */
 } mpm_cloud;
 
@@ -562,7 +563,7 @@ typedef struct mpm_node {
     mpm_real momentum[3];  /* at k, then k+1 */
     mpm_real force[3];     /* internal + external + contact */
     mpm_real velocity[3];  /* at k+1, mapped back from the updated points (MUSL) */
-    mpm_real reaction[3];  /* momentum given from outside in this step: walls, mpm_node_push */
+    mpm_real reaction[3];  /* momentum given from outside in this step: walls, mpm_push, mpm_node_push */
     int32_t index;         /* number of the node in the grid */
     int32_t next;          /* next slot of this node, or -1 */
     int32_t body;
@@ -617,8 +618,8 @@ typedef struct mpm_ledger {
     double absorbed;     /* energy taken by the viscous dampers */
     double contact;      /* energy lost in contact: nodal impact and friction */
     double hold;         /* energy lost in holding pairs: bonds */
-    double walls;        /* energy lost at rigid walls; less what mpm_node_push brought in */
-    double work;         /* done by gravity and by mpm_push */
+    double walls;        /* energy lost at rigid walls; less what mpm_push and mpm_node_push brought in */
+    double work;         /* done by gravity */
     double impulse[3];   /* momentum brought in by all but contact: dampers, sides, mirror images, gravity, pushes */
 } mpm_ledger;
 
@@ -698,10 +699,11 @@ MPM_API mpm_status mpm_init(mpm_world *w, const mpm_desc *d, void *memory, size_
 /* Gives back what MPM_MALLOC gave. Safe on a world whose mpm_init failed. Test: 21_world. */
 MPM_API void mpm_free(mpm_world *w);
 
-/* Fills a shape with points. Numbered in the order of the calls; add the substrate last.
-   MPM_ERR_ARGUMENT / NAN: a field of b; MPM_ERR_OUTSIDE: a point outside the grid (points beyond a
-   symmetry plane are cut off instead); MPM_ERR_OVERLAP: with body fault.index; MPM_ERR_FULL; MPM_ERR_MEMORY. On
-   failure the world is unchanged. Test: 21_world. */
+/* Fills a shape with points, before the first step or between steps. Numbered in the order of the calls; add the
+   substrate last. MPM_ERR_ARGUMENT / NAN: a field of b; MPM_ERR_OUTSIDE: a point outside the grid (points beyond a
+   symmetry plane are cut off instead); MPM_ERR_OVERLAP: with body fault.index, of whose points one lies in the shape,
+   or (before the first step) whose shape holds a new one; MPM_ERR_FULL; MPM_ERR_MEMORY. On failure the world is
+   unchanged. Test: 21_world, 26_extend. */
 MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *b);
 
 /* A body of given points: b says what the cloud leaves open, its shape is not read, so that it can have no
@@ -717,9 +719,10 @@ MPM_API mpm_status mpm_points_add(mpm_world *w, int32_t body, const mpm_cloud *p
    MPM_ERR_ARGUMENT: there is none. Test: 26_extend. */
 MPM_API mpm_status mpm_point_take(mpm_world *w, int32_t i);
 
-/* The rule of contact between bodies a and b, in any order, -1 for any body: of several that fit, the one set
-   last. Bodies need not be there yet. MPM_ERR_ARGUMENT / NAN: a field of the rule; MPM_ERR_FULL: desc.rules; in
-   caller's memory logistic normals must stand in desc.contact too, for their room. Test: 26_extend. */
+/* The rule of contact between bodies a and b, in any order, -1 for any body, between steps: of several that fit, the
+   one set last; set again for the same two, it replaces theirs. Bodies need not be there yet. MPM_ERR_ARGUMENT / NAN:
+   a field of the rule; MPM_ERR_FULL: desc.rules; in caller's memory logistic normals must stand in desc.contact too,
+   for their room. Test: 26_extend. */
 MPM_API mpm_status mpm_contact_set(mpm_world *w, int32_t a, int32_t b, const mpm_contact *rule);
 
 /* The rule that bodies a and b meet by. Test: 26_extend. */
@@ -814,8 +817,9 @@ MPM_API void mpm_support_of(const mpm_world *w, const mpm_run *run, int32_t i, m
 /* The grid's velocity at the point, sum N_I P_I / m_I. After mpm_p2g. Test: 26_extend. */
 MPM_API void mpm_support_velocity(const mpm_world *w, const mpm_support *s, mpm_real v[3]);
 
-/* An outer force f on a point, N_I f to its nodes: body forces, tractions. Impulse and work, f dt . (v + f dt / 2m)
-   with the grid's v, go to the ledger. Between mpm_p2g and mpm_grid_update. Test: 26_extend. */
+/* An outer force f on a point, N_I f to its nodes: body forces, tractions. What sides forbid is taken out of f; the
+   rest is in the ledger: in `impulse`, its work in `walls` (negative: brought in). Between mpm_p2g and
+   mpm_grid_update. Test: 26_extend. */
 MPM_API void mpm_push(mpm_world *w, const mpm_support *s, const mpm_real f[3]);
 
 /* Momentum j to a slot from outside: rigid tools, prescribed velocities. What sides forbid is taken out of j; the
@@ -837,8 +841,8 @@ MPM_API mpm_real mpm_pair_stick(const mpm_world *w, const mpm_pair *p, mpm_real 
    |sum m grad N . n| / initial density. In a quarter model it is a quarter. Test: 30_bond. */
 MPM_API double mpm_pair_area(const mpm_world *w, const mpm_pair *p);
 
-/* Momentum j to a and -j to b, as contact laws give it: kept in pair.impulse for the ledger. Between
-   mpm_contact_find and mpm_g2p. Test: 26_extend. */
+/* Momentum j to a and -j to b, as contact laws give it, less what sides forbid: kept in pair.impulse for the ledger.
+   Between mpm_contact_find and mpm_g2p. Test: 26_extend. */
 MPM_API void mpm_pair_push(mpm_world *w, mpm_pair *p, const mpm_real j[3]);
 
 /* ---- looking at it ------------------------------------------------------------------------- */
@@ -1233,12 +1237,14 @@ MPM_API void mpm_push(mpm_world *w, const mpm_support *s, const mpm_real f[3])
     int a, d;
     for (a = 0; a < s->count; a++) {
         mpm_node *n = &w->node[s->slot[a]];
+        mpm_real j[3];
         if (!(n->mass > w->desc.mass_cutoff * w->body[n->body].point_mass)) continue;
+        for (d = 0; d < 3; d++) j[d] = s->N[a] * mpm__image(s, a, d) * f[d] * w->dt;
+        mpm__constrain(w, n, j, NULL);
         for (d = 0; d < 3; d++) {
-            const mpm_real j = s->N[a] * mpm__image(s, a, d) * f[d] * w->dt;
-            n->force[d] += j / w->dt;
-            w->ledger.impulse[d] += (double)j;
-            w->ledger.work += (double)(j * (n->momentum[d] + j / 2) / n->mass);
+            n->force[d] += j[d] / w->dt;
+            n->reaction[d] += j[d];
+            w->ledger.impulse[d] += (double)j[d];
         }
     }
 }
@@ -1408,7 +1414,6 @@ MPM_API void mpm_forces(mpm_world *w)
                 mpm_node *n = &w->node[i];
                 n->force[d] += n->mass * g[d];
                 w->ledger.impulse[d] += (double)(n->mass * g[d] * dt);
-                w->ledger.work += (double)((n->momentum[d] + MPM_R(0.5) * n->mass * g[d] * dt) * g[d] * dt);
             }
 }
 
@@ -1789,13 +1794,16 @@ MPM_API double mpm_pair_area(const mpm_world *w, const mpm_pair *p)
 MPM_API void mpm_pair_push(mpm_world *w, mpm_pair *p, const mpm_real j[3])
 {
     mpm_node *a = &w->node[p->a], *b = &w->node[p->b];
+    mpm_real to[3];
     int d;
+    for (d = 0; d < 3; d++) to[d] = j[d];
+    mpm__constrain(w, a, to, NULL);
     for (d = 0; d < 3; d++) {
-        p->impulse[d] += j[d];
-        a->momentum[d] += j[d];
-        b->momentum[d] -= j[d];
-        a->force[d] += j[d] / w->dt;
-        b->force[d] -= j[d] / w->dt;
+        p->impulse[d] += to[d];
+        a->momentum[d] += to[d];
+        b->momentum[d] -= to[d];
+        a->force[d] += to[d] / w->dt;
+        b->force[d] -= to[d] / w->dt;
     }
 }
 
@@ -1850,7 +1858,6 @@ MPM_API void mpm_contact_apply(mpm_world *w)
         mpm_pair *p = &w->pair[i];
         mpm_real j[3];
         if (!mpm__contact_impulse(w, p, j)) continue;
-        mpm__constrain(w, &w->node[p->a], j, NULL);
         mpm_pair_push(w, p, j);
         w->held += p->held;
     }
@@ -1914,6 +1921,23 @@ static inline mpm_real mpm__mean_velocity(const mpm_node *n, int d, mpm_real dt)
     return MPM_R(0.5) * ((n->momentum[d] - n->force[d] * dt) / n->mass + n->velocity[d]);
 }
 
+/* Work of gravity, where sides let nodes move. */
+static inline void mpm__account_gravity(mpm_world *w)
+{
+    const mpm_real *g = w->desc.gravity, dt = w->dt;
+    int32_t i;
+    int d;
+    if (!(g[0] < 0 || g[0] > 0 || g[1] < 0 || g[1] > 0 || g[2] < 0 || g[2] > 0)) return;
+    for (i = 0; i < w->nodes; i++) {
+        const mpm_node *n = &w->node[i];
+        mpm_real j[3];
+        if (!(n->mass > 0)) continue;
+        for (d = 0; d < 3; d++) j[d] = n->mass * g[d] * dt;
+        if (n->flags) mpm__constrain(w, n, j, NULL);
+        for (d = 0; d < 3; d++) w->ledger.work += (double)(j[d] * mpm__mean_velocity(n, d, dt));
+    }
+}
+
 /* Energy lost in contact, in bonds and at walls. */
 static inline void mpm__account(mpm_world *w)
 {
@@ -1949,6 +1973,7 @@ MPM_API void mpm_musl(mpm_world *w)
         for (d = 0; d < 3; d++) n->velocity[d] = n->mass > 0 ? n->velocity[d] / n->mass : 0;
     }
     mpm__account(w);
+    mpm__account_gravity(w);
     for (i = 0; i < w->nodes; i++) {
         mpm_node *n = &w->node[i];
         int s;
@@ -2725,16 +2750,36 @@ MPM_API int mpm_field_take(mpm_world *w, const char *name)
     return f;
 }
 
+/* Room for the planes of logistic normals. */
+static inline mpm_status mpm__plane_room(mpm_world *w)
+{
+    mpm_status s;
+    if (w->planes) return MPM_OK;
+    if (!w->owns_work) return mpm_fail(&w->fault, MPM_ERR_FULL, "planes of logistic normals", 0, -1);
+    w->planes = 1;
+    s = mpm_reserve(w, NULL, 0);
+    if (s != MPM_OK) w->planes = 0;
+    return s;
+}
+
+/* Takes the rule of a and b out, if they have one. */
+static inline void mpm__rule_drop(mpm_world *w, int32_t a, int32_t b)
+{
+    int32_t i, kept = 0;
+    for (i = 0; i < w->rules; i++) {
+        const mpm_rule r = w->rule[i];
+        if (!(r.a == a && r.b == b) && !(r.a == b && r.b == a)) w->rule[kept++] = r;
+    }
+    w->rules = kept;
+}
+
 MPM_API mpm_status mpm_contact_set(mpm_world *w, int32_t a, int32_t b, const mpm_contact *rule)
 {
     mpm_status s = mpm_contact_check(rule, &w->fault);
-    if (s == MPM_OK && rule->normal == MPM_NORMAL_LOGISTIC && !w->planes) {
-        if (!w->owns_work) return mpm_fail(&w->fault, MPM_ERR_FULL, "planes of logistic normals", 0, -1);
-        w->planes = 1;
-        s = mpm_reserve(w, NULL, 0);
-    }
-    if (s == MPM_OK) s = mpm__room(w, 0, 0, 1, 0);
+    if (s == MPM_OK && rule->normal == MPM_NORMAL_LOGISTIC) s = mpm__plane_room(w);
     if (s != MPM_OK) return s;
+    mpm__rule_drop(w, a, b);
+    if ((s = mpm__room(w, 0, 0, 1, 0)) != MPM_OK) return s; /* none was dropped, or there is room */
     w->rule[w->rules].a = a;
     w->rule[w->rules].b = b;
     w->rule[w->rules++].contact = *rule;
@@ -2807,19 +2852,29 @@ MPM_API mpm_shape mpm_shape_user(mpm_inside_fn inside, void *context, const mpm_
     return s;
 }
 
-/* Whether a shape of the user's contains x and all that lies `shrink` beside it, along axes and diagonals. */
+/* Whether a shape of the user's contains x: in its box, and by its function. */
+static inline int mpm__contains_own(const mpm_shape *s, const mpm_real *x, int flat)
+{
+    int d;
+    for (d = 0; d < 3; d++) {
+        const mpm_real q = (d == 1 && flat) ? 0 : (x[d] - s->center[d]) / s->half[d];
+        if (!(q >= -1 && q <= 1)) return 0;
+    }
+    return s->inside(s->context, x);
+}
+
+/* ... and all that lies `shrink` away from it, along axes and diagonals. */
 static inline int mpm__contains_user(const mpm_shape *s, const mpm_real *x, int flat, mpm_real shrink)
 {
-    int i, beside = shrink > 0 ? 1 : 0;
-    mpm_real at[3];
+    int i, d;
     for (i = 0; i < 27; i++) {
-        const int step[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
-        if (!beside && i != 13) continue;
-        if (flat && step[1]) continue;
-        at[0] = x[0] + (mpm_real)step[0] * shrink;
-        at[1] = flat ? 0 : x[1] + (mpm_real)step[1] * shrink;
-        at[2] = x[2] + (mpm_real)step[2] * shrink;
-        if (!s->inside(s->context, at)) return 0;
+        const int way[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+        const int square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+        const mpm_real part = square > 1 ? shrink / mpm_sqrt((mpm_real)square) : shrink;
+        mpm_real at[3];
+        if ((square && !(shrink > 0)) || (flat && way[1])) continue;
+        for (d = 0; d < 3; d++) at[d] = d == 1 && flat ? 0 : x[d] + (mpm_real)way[d] * part;
+        if (!mpm__contains_own(s, at, flat)) return 0;
     }
     return 1;
 }
@@ -2829,8 +2884,9 @@ static inline int mpm__contains(const mpm_shape *s, const mpm_real *x, int flat,
 {
     mpm_real q[3];
     int d;
+    if (s->kind == MPM_SHAPE_USER) return mpm__contains_user(s, x, flat, shrink);
     for (d = 0; d < 3; d++) {
-        mpm_real half = s->half[d] - (s->kind == MPM_SHAPE_USER ? 0 : shrink);
+        mpm_real half = s->half[d] - shrink;
         if (half <= 0) return 0;
         q[d] = (d == 1 && flat) ? 0 : (x[d] - s->center[d]) / half;
     }
@@ -2838,9 +2894,6 @@ static inline int mpm__contains(const mpm_shape *s, const mpm_real *x, int flat,
     case MPM_SHAPE_ELLIPSOID: return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] <= 1;
     case MPM_SHAPE_CYLINDER: return q[0] * q[0] + q[1] * q[1] <= 1 && q[2] >= -1 && q[2] <= 1;
     case MPM_SHAPE_BOX: return q[0] >= -1 && q[0] <= 1 && q[1] >= -1 && q[1] <= 1 && q[2] >= -1 && q[2] <= 1;
-    case MPM_SHAPE_USER:
-        return q[0] >= -1 && q[0] <= 1 && q[1] >= -1 && q[1] <= 1 && q[2] >= -1 && q[2] <= 1 &&
-               mpm__contains_user(s, x, flat, shrink);
     default: return 0;
     }
 }
@@ -3034,12 +3087,12 @@ static inline void mpm__areas(const mpm_desc *d, mpm_body *b)
     }
 }
 
-/* The body whose shape contains x, or -1. */
-static inline int32_t mpm__body_at(const mpm_world *w, const mpm_real *x)
+/* The body, other than `own`, whose shape contains x, or -1. After the first step bodies are elsewhere. */
+static inline int32_t mpm__body_at(const mpm_world *w, const mpm_real *x, int32_t own)
 {
     int32_t b;
-    for (b = 0; b < w->bodies; b++)
-        if (mpm__contains(&w->body[b].desc.shape, x, mpm__flat(&w->desc), 0)) return b;
+    for (b = 0; b < w->bodies && w->steps == 0; b++)
+        if (b != own && mpm__contains(&w->body[b].desc.shape, x, mpm__flat(&w->desc), 0)) return b;
     return -1;
 }
 
@@ -3073,14 +3126,14 @@ static inline void mpm__put_point(mpm_world *w, const mpm_body_desc *d, int32_t 
     p->flags[i] = flags;
 }
 
-/* Whether a point may be placed at x: inside the grid, in no body's shape. */
-static inline mpm_status mpm__place_check(const mpm_world *w, const mpm_real *x, long index, mpm_fault *f)
+/* Whether a point of body `own` may be placed at x: inside the grid, in no other body's shape. */
+static inline mpm_status mpm__place_check(const mpm_world *w, int32_t own, const mpm_real *x, long index, mpm_fault *f)
 {
     static const char *const name[3] = {"x of a point", "y of a point", "z of a point"};
     const int a = mpm__axis_outside(&w->desc, x);
     int32_t other;
     if (a >= 0) return mpm_fail(f, MPM_ERR_OUTSIDE, name[a], x[a], index);
-    if ((other = mpm__body_at(w, x)) >= 0)
+    if ((other = mpm__body_at(w, x, own)) >= 0)
         return mpm_fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
     return MPM_OK;
 }
@@ -3094,18 +3147,26 @@ static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
     mpm_status s;
     mpm_real x[3];
     while (mpm__lattice_next(&l, &w->desc, &d->shape, x)) {
-        if ((s = mpm__place_check(w, x, w->bodies, f)) != MPM_OK) return s;
+        if ((s = mpm__place_check(w, w->bodies, x, w->bodies, f)) != MPM_OK) return s;
         mpm__put_point(w, d, i++, x, mpm__point_mass(&w->desc, d, x), mpm__flags(d, x, mpm__flat(&w->desc)));
     }
     b->count = i - w->points.count;
     return MPM_OK;
 }
 
+/* The mean mass of the points of a body, which has some. */
+static inline void mpm__mean_mass(const mpm_world *w, mpm_body *b)
+{
+    double mass = 0;
+    int32_t i;
+    for (i = b->first; i < b->first + b->count; i++) mass += (double)w->points.mass[i];
+    if (b->count > 0) b->point_mass = (mpm_real)(mass / b->count);
+}
+
 /* Sums of the points just written, and their numbers. */
 static inline void mpm__body_sums(mpm_world *w, mpm_body *b)
 {
     const mpm_points *p = &w->points;
-    double mass = 0;
     int32_t i;
     b->first = w->points.count;
     b->active = b->count;
@@ -3113,10 +3174,9 @@ static inline void mpm__body_sums(mpm_world *w, mpm_body *b)
     for (i = b->first; i < b->first + b->count; i++) {
         if (p->flags[i] & MPM_FACE_BOTTOM) b->mass[0] += p->mass[i];
         if (p->flags[i] & MPM_FACE_RIM) b->mass[1] += p->mass[i];
-        mass += (double)p->mass[i];
         p->id[i] = w->next_id++;
     }
-    b->point_mass = (mpm_real)(mass / b->count);
+    mpm__mean_mass(w, b);
 }
 
 /* A body added earlier may stick into the new one without the reverse. */
@@ -3145,11 +3205,11 @@ static inline mpm_status mpm__body_join(mpm_world *w, mpm_body *b)
     w->points.count += b->count;
     w->sorted_runs = 0;
     s = mpm__locate(w);
-    if (s == MPM_OK && w->owns_work && w->nodes + w->nodes / 2 > w->node_capacity) {
+    if (s >= 0 && w->owns_work && w->nodes + w->nodes / 2 > w->node_capacity) {
         s = mpm_reserve(w, NULL, 0);
         if (s == MPM_OK) s = mpm__locate(w);
     }
-    if (s >= 0) return s;
+    if (s >= 0) return MPM_OK; /* points of other bodies may have left: see w->retired */
     w->bodies--;
     w->points.count -= b->count;
     w->next_id = next_id;
@@ -3200,7 +3260,9 @@ static inline void mpm__cloud_place(const mpm_world *w, const mpm_cloud *c, int3
     for (a = 0; a < 3; a++) x[a] = a == 1 && mpm__flat(&w->desc) ? 0 : mpm__given(c->x[a], i, 0);
 }
 
-static inline mpm_status mpm__cloud_check(const mpm_world *w, const mpm_body_desc *d, const mpm_cloud *c, mpm_fault *f)
+/* Whether the points of a cloud may join body `own`, described by d. */
+static inline mpm_status mpm__cloud_check(const mpm_world *w, int32_t own, const mpm_body_desc *d, const mpm_cloud *c,
+                                          mpm_fault *f)
 {
     mpm_real x[3], mass;
     mpm_status s = mpm_want(c->count >= 1, f, "points", (mpm_real)c->count, -1);
@@ -3214,10 +3276,11 @@ static inline mpm_status mpm__cloud_check(const mpm_world *w, const mpm_body_des
             s = mpm_want(1, f, "x of a point", x[a], i);
             if (s == MPM_OK) s = mpm_want(1, f, "v of a point", mpm__given(c->v[a], i, 0), i);
         }
-        if (s == MPM_OK) s = mpm__place_check(w, x, i, f);
+        if (s == MPM_OK) s = mpm__place_check(w, own, x, i, f);
         if (s != MPM_OK) return s;
+        if (c->volume) s = mpm_want(c->volume[i] > 0, f, "volume of a point", c->volume[i], i);
         mass = mpm__cloud_mass(w, d, c, i, x);
-        s = mpm_want(mass > 0, f, "mass of a point", mass, i);
+        if (s == MPM_OK) s = mpm_want(mass > 0, f, "mass of a point", mass, i);
     }
     return s;
 }
@@ -3230,6 +3293,7 @@ static inline void mpm__put_cloud(mpm_world *w, const mpm_body_desc *d, const mp
     mpm__cloud_place(w, c, i, x);
     mpm__put_point(w, d, to, x, mpm__cloud_mass(w, d, c, i, x), (uint8_t)(c->flags ? c->flags[i] : 0));
     for (a = 0; a < 3; a++) w->points.v[a][to] = mpm__given(c->v[a], i, d->velocity[a]);
+    if (c->mass && c->volume) w->points.density[to] = c->mass[i] / c->volume[i];
 }
 
 /* The box around a cloud, half a spacing wide of it, as a shape that contains nothing. */
@@ -3255,7 +3319,7 @@ MPM_API mpm_status mpm_body_add_points(mpm_world *w, const mpm_body_desc *desc, 
     mpm_status s;
     memset(&b, 0, sizeof b);
     if ((s = mpm__body_check(w, desc, f)) != MPM_OK || (s = mpm__absorb_check(desc, 0, f)) != MPM_OK ||
-        (s = mpm__cloud_check(w, desc, c, f)) != MPM_OK || (s = mpm__room(w, c->count, 1, 0, 0)) != MPM_OK)
+        (s = mpm__cloud_check(w, w->bodies, desc, c, f)) != MPM_OK || (s = mpm__room(w, c->count, 1, 0, 0)) != MPM_OK)
         return s;
     b.desc = *desc;
     b.desc.shape = mpm__cloud_extent(w, c, desc->spacing);
@@ -3319,7 +3383,7 @@ MPM_API mpm_status mpm_points_add(mpm_world *w, int32_t body, const mpm_cloud *c
     mpm_fault *f = &w->fault;
     int32_t i;
     mpm_status s = mpm_want(body >= 0 && body < w->bodies, f, "body", (mpm_real)body, -1);
-    if (s != MPM_OK || (s = mpm__cloud_check(w, &w->body[body].desc, c, f)) != MPM_OK ||
+    if (s != MPM_OK || (s = mpm__cloud_check(w, body, &w->body[body].desc, c, f)) != MPM_OK ||
         (s = mpm__room(w, c->count, 0, 0, 0)) != MPM_OK)
         return s;
     mpm__grid_reset(w);
@@ -3331,6 +3395,7 @@ MPM_API mpm_status mpm_points_add(mpm_world *w, int32_t body, const mpm_cloud *c
         w->body[body].active++;
         w->points.count++;
     }
+    mpm__mean_mass(w, &w->body[body]);
     w->sorted_runs = 0;
     return MPM_OK;
 }
@@ -3343,6 +3408,7 @@ MPM_API mpm_status mpm_point_take(mpm_world *w, int32_t i)
     mpm__grid_reset(w);
     while (i >= w->body[b].first + w->body[b].count) b++;
     mpm__close_place(w, b, i);
+    mpm__mean_mass(w, &w->body[b]);
     return MPM_OK;
 }
 

@@ -105,7 +105,8 @@ extern "C" {
 /* The pressure. */
 #define MPM_EOS_LIST(X)                                                                    \
     X(MPM_EOS_LINEAR, "linear", "K (eta - 1), K from young and poisson; no thermal pressure") \
-    X(MPM_EOS_MIE_GRUENEISEN, "mie-grueneisen", "shock Hugoniot plus Grueneisen times energy (A 3.42, 3.43)")
+    X(MPM_EOS_MIE_GRUENEISEN, "mie-grueneisen", "shock Hugoniot plus Grueneisen times energy (A 3.42, 3.43)") \
+    X(MPM_EOS_USER, "user", "the caller's eos_fn")
 
 /* How a trial stress beyond the flow stress comes back to it. */
 #define MPM_RETURN_LIST(X)                                                                 \
@@ -196,6 +197,34 @@ struct mpm_material;
 typedef mpm_flow (*mpm_strength_fn)(const void *context, const struct mpm_material *m,
                                     const mpm_material_state *s);
 
+/* A pressure and what goes with it. */
+typedef struct mpm_pressure {
+    mpm_real pressure;      /* compression positive [stress] */
+    mpm_real energy_slope;  /* d pressure / d energy at constant density [mass/length^3], Gamma rho; >= 0. Guides
+                               the solution, and heats by compression: Gamma of compression_heating */
+    mpm_real sound_speed;   /* for the linear bulk viscosity [velocity], >= 0; not asked for without it */
+} mpm_pressure;
+
+/* A caller's equation of state: the pressure at a density > 0 and an internal energy per mass. The update asks for
+   it until pressure and energy at the end of a step agree: twice a step where pressure is linear in energy. A NaN
+   says that the state is out of range, and stops the step with MPM_ERR_NAN. young and poisson still give the wave
+   speeds, of which the time step is made: let K = young/(3 (1 - 2 poisson)) be its bulk modulus. A stiffened gas,
+   p = (g - 1) rho e + g P (rho/rho0 - 1) with c^2 = g (p + P)/rho, for water at impact, would be
+       typedef struct stiffened { mpm_real g, P; } stiffened;
+       static mpm_pressure stiffened_gas(const void *context, const mpm_material *m, mpm_real density, mpm_real energy)
+       {
+           const stiffened *c = (const stiffened *)context;
+           mpm_pressure p;
+           p.energy_slope = (c->g - 1) * density;
+           p.pressure = p.energy_slope * energy + c->g * c->P * (density / m->density - 1);
+           p.sound_speed = mpm_sqrt(c->g * (p.pressure + c->P) / density);
+           return p;
+       }
+   and is chosen by material.eos = MPM_EOS_USER, eos_fn = stiffened_gas and eos_context = &its_numbers.
+   Test: 11_update "an equation of state of one's own". */
+typedef mpm_pressure (*mpm_eos_fn)(const void *context, const struct mpm_material *m, mpm_real density,
+                                   mpm_real energy);
+
 /* One material, every number in the caller's units. Fill it with mpm_material_default or
    mpm_material_preset, change fields, then call mpm_material_check. */
 typedef struct mpm_material {
@@ -215,8 +244,8 @@ typedef struct mpm_material {
     mpm_real specific_heat;  /* Cp [energy/(mass K)], > 0 where plastic work heats */
     mpm_real temperature;    /* initial [K], >= 0 */
     mpm_real heat_fraction;  /* chi, the part of plastic work that heats (A 3.44), 0 .. 1 */
-    int compression_heating; /* 1: compression (dT = -Gamma0 T dV/V0, Mie-Grueneisen only) and the work of the bulk
-                                viscosity heat too; 0: they do not, as in source A (default).
+    int compression_heating; /* 1: compression (dT = -Gamma0 T dV/V0, for any equation of state but the linear one)
+                                and the work of the bulk viscosity heat too; 0: they do not, as in source A (default).
                                 Tests: 11_update "compression", 24_manufactured "shock" */
     mpm_real young, poisson; /* for wave speeds and the linear equation of state */
 
@@ -238,6 +267,8 @@ typedef struct mpm_material {
     mpm_ptw ptw;
     mpm_strength_fn strength_fn;    /* MPM_STRENGTH_USER */
     const void *strength_context;
+    mpm_eos_fn eos_fn;              /* MPM_EOS_USER */
+    const void *eos_context;
 
     /* artificial bulk viscosity, added to the pressure while the material is compressed at rate D:
        rho cell D (viscosity_quadratic cell D + viscosity_linear c_bulk). Both 0: none. */
@@ -247,7 +278,7 @@ typedef struct mpm_material {
 /* What mpm_material_stress counts in the world's tally. */
 enum {
     MPM_TALLY_SHEAR_FLOOR = 0, /* points whose shear modulus was bounded */
-    MPM_TALLY_ITERATION,       /* returns that ended at the iteration cap */
+    MPM_TALLY_ITERATION,       /* returns, and pressures of a caller's, that ended at the iteration cap */
     MPM_TALLY_ERF_CLIP         /* yielding points beyond r = 1, where the erf bound acts */
 };
 
@@ -300,12 +331,15 @@ MPM_API mpm_real mpm_material_attempt_rate(const mpm_material *m, const mpm_mate
 
 /* Pressure at a density and an internal energy per mass (A 3.42), to *pressure.
    Returns MPM_OK; MPM_ERR_STATE for a density <= 0 or past the range of the Hugoniot
-   (1 - (s-1) mu <= 0); MPM_ERR_NAN. *pressure is then unchanged. */
+   (1 - (s-1) mu <= 0); MPM_ERR_NAN, also where a caller's equation of state says so. *pressure is
+   then unchanged. Test: 10_material "pressure and waves". */
 MPM_API mpm_status mpm_material_pressure(const mpm_material *m, mpm_real density, mpm_real energy,
                                          mpm_real *pressure, mpm_fault *fault);
 
 /* Pressure of the reference curve: behind a shock that compresses the material from rest to the
-   given density; in tension the line rho0 c0^2 mu. Errors as mpm_material_pressure. */
+   given density; in tension the line rho0 c0^2 mu (a caller's: pressure without energy). A caller's equation of state
+   is solved for it, p = p(rho, (p + p0) (1/rho0 - 1/rho)/2): MPM_NOT_CONVERGED at the iteration cap. Other errors
+   as mpm_material_pressure. Test: 10_material "pressure and waves". */
 MPM_API mpm_status mpm_material_hugoniot_pressure(const mpm_material *m, mpm_real density,
                                                   mpm_real *pressure, mpm_fault *fault);
 
@@ -321,7 +355,7 @@ MPM_API void mpm_material_wave_speeds(const mpm_material *m, mpm_real density, m
    material  a const mpm_material *, valid under mpm_material_check
    The block's tally, unless it is NULL, counts under MPM_TALLY_*.
    Returns MPM_OK; MPM_CLAMPED if a shear modulus was bounded; MPM_NOT_CONVERGED if a return ended
-   at its iteration cap (bracketed: the value is usable); MPM_ERR_ARGUMENT (count < 0, dt <= 0);
+   at its iteration cap (bracketed: the value is usable), or a caller's equation of state at it; MPM_ERR_ARGUMENT (count < 0, dt <= 0);
    MPM_ERR_NAN, MPM_ERR_STATE with the first bad point in block->fault. Blocks of up to 64 points
    are unchanged on failure; of longer ones, the points before the bad group of 64 are updated.
    Tests: 11_update. */
@@ -1166,6 +1200,45 @@ static inline mpm_status mpm__ptw_eos_range(const mpm_material *m, mpm_real dens
     return MPM_OK;
 }
 
+enum { MPM__PTW_ITERATIONS = 100 };
+
+/* A caller's pressure and the energy per mass that satisfy e + h p(rho, e) = start together, by Newton's method from
+   the given energy. The energy returned is start - h p to the last bit, so that it is the work of the pressures that
+   were used. MPM_NOT_CONVERGED at the cap; MPM_ERR_NAN; MPM_ERR_STATE where 1 + h dp/de <= 0: more compression than
+   any pressure can bring about. */
+static inline mpm_status mpm__ptw_close_energy(const mpm_material *m, mpm_real density, mpm_real h, mpm_real start,
+                                               mpm_real *energy, mpm_pressure *p)
+{
+    int tries;
+    for (tries = 0; tries < MPM__PTW_ITERATIONS; tries++) {
+        mpm_real left, slope, last = *energy;
+        *p = m->eos_fn(m->eos_context, m, density, last);
+        *energy = start - h * p->pressure;
+        left = *energy - last;
+        slope = 1 + h * p->energy_slope;
+        if (!mpm_finite(left) || !mpm_finite(slope)) return MPM_ERR_NAN;
+        if (!(slope > 0)) return MPM_ERR_STATE;
+        if (mpm_fabs(left) <= 8 * MPM_EPSILON * (mpm_fabs(last) + mpm_fabs(h * p->pressure))) return MPM_OK;
+        if (tries < MPM__PTW_ITERATIONS - 1) *energy = last + left / slope;
+    }
+    return MPM_NOT_CONVERGED;
+}
+
+/* The reference curve of a caller's equation of state. */
+static inline mpm_status mpm__ptw_hugoniot_user(const mpm_material *m, mpm_real density, mpm_real *pressure,
+                                                mpm_fault *fault)
+{
+    mpm_real h = mpm__ptw_min((1 / density - 1 / m->density) / 2, 0);
+    mpm_real rest = m->eos_fn(m->eos_context, m, m->density, 0).pressure, energy = -h * rest;
+    mpm_pressure p;
+    mpm_status status = mpm__ptw_close_energy(m, density, h, energy, &energy, &p);
+    if (status == MPM_ERR_STATE)
+        return mpm_fail(fault, status, "density of point past the Hugoniot's range", density, -1);
+    if (status < 0) return mpm_fail(fault, status, "pressure of point", p.pressure, -1);
+    *pressure = p.pressure;
+    return status;
+}
+
 /* ---- the public laws ----------------------------------------------------------------------- */
 
 MPM_API mpm_real mpm_material_shear_modulus(const mpm_material *m, const mpm_material_state *s)
@@ -1203,14 +1276,17 @@ MPM_API mpm_real mpm_material_flow_stress(const mpm_material *m, const mpm_mater
 MPM_API mpm_status mpm_material_pressure(const mpm_material *m, mpm_real density, mpm_real energy,
                                          mpm_real *pressure, mpm_fault *fault)
 {
-    mpm_real mu = density / m->density - 1;
+    mpm_real mu = density / m->density - 1, p;
     mpm_status status = mpm__ptw_eos_range(m, density, -1, fault);
     if (status < 0) return status;
     if (!mpm_finite(energy)) return mpm_fail(fault, MPM_ERR_NAN, "energy", energy, -1);
-    if (m->eos == MPM_EOS_LINEAR)
-        *pressure = mpm__ptw_bulk_modulus(m) * mu;
-    else
-        *pressure = mpm__ptw_cold_pressure(m, mu) + m->gruneisen * m->density * energy;
+    switch (m->eos) {
+    case MPM_EOS_LINEAR: p = mpm__ptw_bulk_modulus(m) * mu; break;
+    case MPM_EOS_USER: p = m->eos_fn(m->eos_context, m, density, energy).pressure; break;
+    default: p = mpm__ptw_cold_pressure(m, mu) + m->gruneisen * m->density * energy;
+    }
+    if (!mpm_finite(p)) return mpm_fail(fault, MPM_ERR_NAN, "pressure of point", p, -1);
+    *pressure = p;
     return MPM_OK;
 }
 
@@ -1220,6 +1296,7 @@ MPM_API mpm_status mpm_material_hugoniot_pressure(const mpm_material *m, mpm_rea
     mpm_real mu = density / m->density - 1;
     mpm_status status = mpm__ptw_eos_range(m, density, -1, fault);
     if (status < 0) return status;
+    if (m->eos == MPM_EOS_USER) return mpm__ptw_hugoniot_user(m, density, pressure, fault);
     *pressure = m->eos == MPM_EOS_LINEAR ? mpm__ptw_bulk_modulus(m) * mu : mpm__ptw_hugoniot(m, mu);
     return MPM_OK;
 }
@@ -1242,7 +1319,10 @@ typedef struct mpm__ptw_lanes {
     mpm_real rotated[6][MPM__PTW_LANES];  /* deviator of level k, rotated */
     mpm_real trial[6][MPM__PTW_LANES];    /* trial deviator, then the new one */
     mpm_real strain[6][MPM__PTW_LANES];   /* deviatoric strain increment */
-    mpm_real mean[MPM__PTW_LANES];        /* mean stress of level k */
+    mpm_real mean[MPM__PTW_LANES];        /* mean stress of level k, then k+1 */
+    mpm_real energy[MPM__PTW_LANES];      /* internal energy per mass of level k+1 */
+    mpm_real viscous[MPM__PTW_LANES];     /* pressure of the bulk viscosity */
+    mpm_real thermal[MPM__PTW_LANES];     /* d pressure / d energy per initial volume: Gamma rho/rho0 */
     mpm_real volume[MPM__PTW_LANES];      /* trace of the strain increment */
     mpm_real shear[MPM__PTW_LANES];       /* mu */
     mpm_real mises2[MPM__PTW_LANES];      /* square of the trial von Mises stress */
@@ -1458,7 +1538,6 @@ static inline mpm_flow mpm__ptw_flow_at(const mpm_material *m, const mpm__ptw_sh
     return mpm__ptw_flow(m, h, &q->point);
 }
 
-enum { MPM__PTW_ITERATIONS = 100 };
 #ifdef MPM_FLOAT
 #define MPM__PTW_TOLERANCE (32 * MPM_EPSILON)
 #else
@@ -1726,31 +1805,10 @@ static inline void mpm__ptw_commit(const mpm_material *m, const mpm_block *b, co
     }
 }
 
-/* The temperature along the isentrope of Gamma rho = Gamma0 rho0, T exp(Gamma0 V/V0) = constant, and the heat of
-   the bulk viscosity q. B is Gamma0, or 0 where pressure knows no temperature. */
-static inline void mpm__ptw_heat_volume(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a,
-                                        mpm_real B, const mpm_real *q)
+/* (s of level k + s of level k+1) : dEps', twice the deviator's work per volume. */
+static inline void mpm__ptw_work(const mpm__ptw_lanes *a, mpm_real *work)
 {
-    int i, k = a->first;
-    for (i = 0; i < a->count; i++) {
-        mpm_real dv = m->density / b->density[k + i] * a->volume[i] / (1 + a->volume[i]);
-        b->temperature[k + i] += b->temperature[k + i] * mpm_expm1(-B * dv);
-        b->temperature[k + i] -= q[i] * dv / (m->density * m->specific_heat);
-    }
-}
-
-/* Pressure with the energy that its own work changes (A 3.40 - 3.43), then the full stress.
-   All energies and volumes here are per initial volume. */
-static inline void mpm__ptw_close(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a)
-{
-    int linear = m->eos == MPM_EOS_LINEAR, i, j, k = a->first;
-    mpm_real bulk = mpm__ptw_bulk_modulus(m), B = linear ? 0 : m->gruneisen;
-    mpm_real stiff = linear ? bulk : m->density * m->sound_speed * m->sound_speed;
-    mpm_real slope = m->hugoniot_slope - 1;
-    mpm_real rho0 = m->density, inverse_rho0 = 1 / rho0, cell_per_step = b->cell / b->dt;
-    mpm_real first = m->viscosity_linear * mpm_sqrt(stiff / rho0), second = m->viscosity_quadratic;
-    mpm_real work[MPM__PTW_LANES], mean[MPM__PTW_LANES], viscous[MPM__PTW_LANES], *energy = b->energy + k;
-    const mpm_real *density = b->density + k;
+    int i;
     for (i = 0; i < a->count; i++)
         work[i] = (a->rotated[0][i] + a->trial[0][i]) * a->strain[0][i] +
                   (a->rotated[1][i] + a->trial[1][i]) * a->strain[1][i] +
@@ -1758,25 +1816,115 @@ static inline void mpm__ptw_close(const mpm_material *m, const mpm_block *b, con
                   2 * ((a->rotated[3][i] + a->trial[3][i]) * a->strain[3][i] +
                        (a->rotated[4][i] + a->trial[4][i]) * a->strain[4][i] +
                        (a->rotated[5][i] + a->trial[5][i]) * a->strain[5][i]);
+}
+
+/* Energy before the new pressure's share of the work, per initial volume (A 3.41):
+   E* = E + V_half s_half : dEps - dV/2 (p + q), v and dv being V and dV over V0. */
+static inline mpm_real mpm__ptw_trial_energy(mpm_real E, mpm_real v, mpm_real dv, mpm_real work, mpm_real mean,
+                                             mpm_real q)
+{
+    return E + (v - dv / 2) * work / 2 + dv / 2 * (mean - q);
+}
+
+/* Bulk viscosity q = rho cell D (quadratic cell D + linear c), D the rate of compression; squeeze is cell D and first
+   is linear c. */
+static inline mpm_real mpm__ptw_viscous(const mpm_material *m, mpm_real rho, mpm_real squeeze, mpm_real first)
+{
+    return rho * squeeze * (m->viscosity_quadratic * squeeze + first);
+}
+
+/* Pressure with the energy that its own work changes, p = (A + B E*)/(1 + B dV/(2 V0)), E = E* - dV p/2
+   (A 3.40 - 3.43). All energies and volumes here are per initial volume. */
+static inline void mpm__ptw_pressure_known(const mpm_material *m, const mpm_block *b, mpm__ptw_lanes *a,
+                                           const mpm_real *work)
+{
+    int linear = m->eos == MPM_EOS_LINEAR, i, k = a->first;
+    mpm_real B = linear ? 0 : m->gruneisen, slope = m->hugoniot_slope - 1;
+    mpm_real stiff = linear ? mpm__ptw_bulk_modulus(m) : m->density * m->sound_speed * m->sound_speed;
+    mpm_real rho0 = m->density, inverse_rho0 = 1 / rho0, cell_per_step = b->cell / b->dt;
+    mpm_real first = m->viscosity_linear * mpm_sqrt(stiff / rho0);
+    const mpm_real *density = b->density + k, *energy = b->energy + k;
     for (i = 0; i < a->count; i++) {
         mpm_real rho = density[i], mu = (rho - rho0) * inverse_rho0, v = rho0 / rho;
         mpm_real dv = v * a->volume[i] / (1 + a->volume[i]);
         mpm_real range = 1 - slope * mu;
         mpm_real shock = stiff * mu * (1 + mu - B / 2 * mu) / (range * range);
         mpm_real A = mu < 0 || linear ? stiff * mu : shock;
-        mpm_real squeeze = cell_per_step * mpm__ptw_max(-a->volume[i], 0);
-        mpm_real q = rho * squeeze * (second * squeeze + first);
-        mpm_real E = rho0 * energy[i] + (v - dv / 2) * work[i] / 2 + dv / 2 * (a->mean[i] - q);
+        mpm_real q = mpm__ptw_viscous(m, rho, cell_per_step * mpm__ptw_max(-a->volume[i], 0), first);
+        mpm_real E = mpm__ptw_trial_energy(rho0 * energy[i], v, dv, work[i], a->mean[i], q);
         mpm_real p = (A + B * E) / (1 + B * dv / 2);
-        energy[i] = (E - dv / 2 * p) * inverse_rho0;
-        mean[i] = -(p + q);
-        viscous[i] = q;
+        a->energy[i] = (E - dv / 2 * p) * inverse_rho0;
+        a->mean[i] = -(p + q);
+        a->viscous[i] = q;
+        a->thermal[i] = B;
     }
-    if (m->compression_heating) mpm__ptw_heat_volume(m, b, a, B, viscous);
+}
+
+/* The same for lane i of a caller's equation of state: e = e* - dV p(rho, e)/2, all per mass. */
+static inline mpm_status mpm__ptw_pressure_user(const mpm_material *m, const mpm_block *b, mpm__ptw_lanes *a, int i,
+                                                mpm_real work)
+{
+    mpm_real rho0 = m->density, rho = b->density[a->first + i], e = b->energy[a->first + i], v = rho0 / rho;
+    mpm_real dv = v * a->volume[i] / (1 + a->volume[i]), h = dv / (2 * rho0), first = 0, q, start;
+    mpm_real squeeze = b->cell / b->dt * mpm__ptw_max(-a->volume[i], 0);
+    mpm_pressure p;
+    mpm_status status;
+    if (squeeze > 0 && m->viscosity_linear > 0)
+        first = m->viscosity_linear * m->eos_fn(m->eos_context, m, rho, e).sound_speed;
+    q = mpm__ptw_viscous(m, rho, squeeze, first);
+    start = mpm__ptw_trial_energy(rho0 * e, v, dv, work, a->mean[i], q) / rho0;
+    a->energy[i] = start;
+    status = mpm__ptw_close_energy(m, rho, h, start, &a->energy[i], &p);
+    if (status == MPM_ERR_STATE)
+        return mpm_fail(b->fault, status, "volume increment of point", a->volume[i], a->first + i);
+    if (status < 0) return mpm_fail(b->fault, status, "pressure of point", p.pressure, a->first + i);
+    a->mean[i] = -(p.pressure + q);
+    a->viscous[i] = q;
+    a->thermal[i] = p.energy_slope / rho0;
+    return status;
+}
+
+/* Mean stress and energy of level k+1. Touches only *a (and counters). */
+static inline mpm_status mpm__ptw_pressure(const mpm_material *m, const mpm_block *b, mpm__ptw_lanes *a)
+{
+    mpm_real work[MPM__PTW_LANES];
+    int i, capped = 0;
+    mpm__ptw_work(a, work);
+    if (m->eos != MPM_EOS_USER) {
+        mpm__ptw_pressure_known(m, b, a, work);
+        return MPM_OK;
+    }
+    for (i = 0; i < a->count; i++) {
+        mpm_status status = mpm__ptw_pressure_user(m, b, a, i, work[i]);
+        if (status < 0) return status;
+        capped += status > 0;
+    }
+    mpm__ptw_count(b, MPM_TALLY_ITERATION, capped);
+    return capped ? MPM_NOT_CONVERGED : MPM_OK;
+}
+
+/* Temperature along the isentrope of Gamma rho = Gamma0 rho0, T exp(Gamma0 V/V0) = constant, and the heat of the bulk
+   viscosity, dT = -q dV/(V0 rho0 Cp). */
+static inline void mpm__ptw_heat_volume(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a)
+{
+    int i, k = a->first;
+    for (i = 0; i < a->count; i++) {
+        mpm_real dv = m->density / b->density[k + i] * a->volume[i] / (1 + a->volume[i]);
+        b->temperature[k + i] += b->temperature[k + i] * mpm_expm1(-a->thermal[i] * dv);
+        b->temperature[k + i] -= a->viscous[i] * dv / (m->density * m->specific_heat);
+    }
+}
+
+/* Energy and full stress, sigma = s - (p + q) I, to the block. */
+static inline void mpm__ptw_close(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a)
+{
+    int i, j, k = a->first;
+    for (i = 0; i < a->count; i++) b->energy[k + i] = a->energy[i];
     for (j = 0; j < 3; j++)
-        for (i = 0; i < a->count; i++) b->stress[j][k + i] = a->trial[j][i] + mean[i];
+        for (i = 0; i < a->count; i++) b->stress[j][k + i] = a->trial[j][i] + a->mean[i];
     for (j = 3; j < 6; j++)
         for (i = 0; i < a->count; i++) b->stress[j][k + i] = a->trial[j][i];
+    if (m->compression_heating) mpm__ptw_heat_volume(m, b, a);
 }
 
 MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *block)
@@ -1803,6 +1951,8 @@ MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *bl
         mpm__ptw_try(&a);
         if ((s = mpm__ptw_screen(m, b, &a)) < 0) return s;
         if ((s = mpm__ptw_yield(m, &h, &bounds, b, &a)) < 0) return s;
+        if (s > 0) status = s;
+        if ((s = mpm__ptw_pressure(m, b, &a)) < 0) return s;
         if (s > 0) status = s;
         mpm__ptw_commit(m, b, &a);
         mpm__ptw_close(m, b, &a);
@@ -1924,6 +2074,7 @@ static inline mpm_status mpm__ptw_check_melt_and_eos(const mpm_material *m, mpm_
         /* With less, T_m would fall on compression from rho0. */
         MPM__PTW_REQUIRE(mpm__ptw_within("gruneisen", m->gruneisen, MPM_R(1.0) / 3, big, fault));
     }
+    if (m->eos == MPM_EOS_USER && !m->eos_fn) return mpm_fail(fault, MPM_ERR_ARGUMENT, "eos_fn", 0, -1);
     if (m->eos == MPM_EOS_MIE_GRUENEISEN) {
         MPM__PTW_REQUIRE(mpm__ptw_positive("sound_speed", m->sound_speed, fault));
         MPM__PTW_REQUIRE(mpm__ptw_within("hugoniot_slope", m->hugoniot_slope, 0, big, fault));

@@ -667,6 +667,209 @@ static void test_user_strength(void)
     CHECK_TRUE("... to a stress below the trial", mises(&p, 0) < 2e8 && mises(&p, 0) > 1e8);
 }
 
+/* ---- an equation of state of one's own -------------------------------------------------------- */
+
+/* A stiffened gas, p = (g - 1) rho e + g P (rho/rho0 - 1), as the header prints it. */
+typedef struct stiffened { mpm_real g, P; } stiffened;
+
+static mpm_pressure stiffened_gas(const void *context, const mpm_material *m, mpm_real density, mpm_real energy)
+{
+    const stiffened *c = (const stiffened *)context;
+    mpm_pressure p;
+    p.energy_slope = (c->g - 1) * density;
+    p.pressure = p.energy_slope * energy + c->g * c->P * (density / m->density - 1);
+    p.sound_speed = mpm_sqrt(c->g * (p.pressure + c->P) / density);
+    return p;
+}
+
+/* Murnaghan's: p = K/n ((rho/rho0)^n - 1), whatever the energy. */
+static mpm_pressure murnaghan(const void *context, const mpm_material *m, mpm_real density, mpm_real energy)
+{
+    const mpm_real *K = (const mpm_real *)context;
+    const double eta = (double)density / (double)m->density;
+    mpm_pressure p;
+    (void)energy;
+    p.energy_slope = 0;
+    p.pressure = (mpm_real)((double)K[0] / (double)K[1] * (pow(eta, (double)K[1]) - 1));
+    p.sound_speed = (mpm_real)sqrt((double)K[0] / (double)m->density * pow(eta, (double)K[1] - 1));
+    return p;
+}
+
+/* The material's own Mie-Grueneisen pressure, handed in from outside. */
+static mpm_pressure grueneisen(const void *context, const mpm_material *m, mpm_real density, mpm_real energy)
+{
+    const mpm_material *own = (const mpm_material *)context;
+    mpm_pressure p;
+    (void)m;
+    if (mpm_material_pressure(own, density, energy, &p.pressure, NULL) < 0) p.pressure = (mpm_real)NAN;
+    p.energy_slope = own->gruneisen * own->density;
+    p.sound_speed = own->sound_speed;
+    return p;
+}
+
+/* Not linear in energy, with a slope that is `context` times the true one; NaN beyond twice the density. */
+static mpm_pressure bent(const void *context, const mpm_material *m, mpm_real density, mpm_real energy)
+{
+    const double e = (double)energy, rho = (double)density, rho0 = (double)m->density;
+    mpm_pressure p;
+    p.pressure = (mpm_real)(rho < 2 * rho0 ? 7e10 * (rho / rho0 - 1) + 1e4 * e + 0.002 * e * fabs(e) : (double)NAN);
+    p.energy_slope = (mpm_real)((1e4 + 0.004 * fabs(e)) * (double)*(const mpm_real *)context);
+    p.sound_speed = 5000;
+    return p;
+}
+
+static mpm_material with_eos(mpm_eos_fn fn, const void *context)
+{
+    mpm_material m = preset("al", "elastic", mpm_units_si());
+    m.eos = MPM_EOS_USER;
+    m.eos_fn = fn;
+    m.eos_context = context;
+    CHECK_EQUAL("an equation of state of one's own, check", mpm_material_check(&m, NULL), MPM_OK);
+    return m;
+}
+
+static double pressure_of(const points *p, int i)
+{
+    return -((double)p->stress[0][i] + (double)p->stress[1][i] + (double)p->stress[2][i]) / 3;
+}
+
+/* Squeezes a point from V0 to `end` V0 in n steps. Returns the work -sum (p + p')/2 dV/V0 of the pressures. */
+static double squeeze(points *p, const mpm_material *m, double end, int n)
+{
+    double work = 0, dv = (end - 1) / n, v = 1, last = 0, was = 1;
+    int i;
+    reset(p, m);
+    for (i = 0; i < n; i++, v += dv) {
+        strain(p, 0, dv / v / 3, dv / v / 3, dv / v / 3, 0, 0, 0);
+        if (update(p, m, 0, 1, 1e-9, NULL) != MPM_OK) return (double)NAN;
+        work -= (pressure_of(p, 0) + last) / 2 * ((double)m->density / (double)p->density[0] - was);
+        last = pressure_of(p, 0);
+        was = (double)m->density / (double)p->density[0];
+    }
+    return work;
+}
+
+/* Closed forms: p + P = P eta^g along the isentrope of a stiffened gas, and Murnaghan's curve with
+   e = K/(rho0 n) ((eta^(n-1) - 1)/(n - 1) + 1/eta - 1). */
+static void test_user_eos(void)
+{
+    const stiffened gas = {MPM_R(4.0), MPM_R(2e9)};
+    const mpm_real K[2] = {MPM_R(70e9), MPM_R(4.0)};
+    mpm_material m = with_eos(stiffened_gas, &gas);
+    double error[2], eta, want;
+    points p;
+    int r;
+    for (r = 0; r < 2; r++) {
+        double work = squeeze(&p, &m, 0.9, 20 << r);
+        want = 2e9 * (pow((double)p.density[0] / 2700, 4) - 1);
+        error[r] = pressure_of(&p, 0) / want - 1;
+        CHECK_RELATIVE("stiffened gas: the energy is the work of the pressures", 2700 * (double)p.energy[0], work,
+                       2000 * EPS);
+    }
+    CHECK_NEAR("stiffened gas: the isentrope in closed form", error[1], 0, 1e-4);
+    if (sizeof(mpm_real) == 8)
+        CHECK_NEAR("... second order in the step", error[0] / error[1], 4, 0.1);
+    m = with_eos(murnaghan, K);
+    (void)squeeze(&p, &m, 0.9, 100);
+    eta = (double)p.density[0] / 2700;
+    CHECK_RELATIVE("Murnaghan: the pressure in closed form", pressure_of(&p, 0), 70e9 / 4 * (pow(eta, 4) - 1), 32 * EPS);
+    want = 70e9 / 4 * ((pow(eta, 3) - 1) / 3 + 1 / eta - 1);
+    CHECK_RELATIVE("Murnaghan: the energy in closed form", 2700 * (double)p.energy[0], want, 1e-4 + 2000 * EPS);
+}
+
+/* Strength, heat of compression and viscosity with it: as with the equation of state built in, to rounding. */
+static void test_grueneisen_through_callback(void)
+{
+    mpm_material own = preset("al", "ptw", mpm_units_si()), m;
+    /* an ulp of eta moves the pressure by K eps, and the energy by the work of that over a strain of 0.01 */
+    const double work = 0.01 * 5386.0 * 5386.0;
+    double gap[3] = {0, 0, 0};
+    unsigned long seed = 11;
+    points p, q;
+    int i, j, k, failed = 0;
+    own.compression_heating = 1;
+    own.viscosity_linear = MPM_R(0.06);
+    own.viscosity_quadratic = MPM_R(1.5);
+    m = own;
+    m.eos = MPM_EOS_USER;
+    m.eos_fn = grueneisen;
+    m.eos_context = &own;
+    reset(&p, &own);
+    for (k = 0; k < 20; k++) {
+        for (i = 0; i < MOST; i++) {
+            double e[6];
+            for (j = 0; j < 6; j++) e[j] = 3e-3 * random_number(&seed) - (j < 3 ? 5e-4 * (i % 5) : 0);
+            strain(&p, i, e[0], e[1], e[2], e[3], e[4], e[5]);
+        }
+        q = p;
+        failed += update(&p, &own, 0, MOST, 1e-4, NULL) != MPM_OK;
+        failed += update(&q, &m, 0, MOST, 1e-4, NULL) != MPM_OK;
+        for (i = 0; i < MOST; i++) {
+            gap[0] = check_worst(gap[0], fabs(pressure_of(&q, i) - pressure_of(&p, i)) / 7e10);
+            gap[1] = check_worst(gap[1], fabs((double)q.energy[i] - (double)p.energy[i]) / work);
+            gap[2] = check_worst(gap[2], fabs((double)q.temperature[i] / (double)p.temperature[i] - 1));
+        }
+    }
+    CHECK_EQUAL("Mie-Grueneisen built in and through the callback: updates that failed", failed, 0);
+    CHECK_NEAR("Mie-Grueneisen through the callback: pressure over the bulk modulus", gap[0], 0, 8 * EPS);
+    CHECK_NEAR("... energy over that of the bulk modulus at a strain of 0.01", gap[1], 0, 8 * EPS);
+    CHECK_NEAR("... temperature", gap[2], 0, 8 * EPS);
+}
+
+/* Curved in energy: energy and pressure still agree, with a slope half as large or twice, and with one that is far
+   off the work is still that of the pressures and the cap is told. What fails leaves the block as it was. */
+static void test_awkward_eos(void)
+{
+    const mpm_real factor[] = {1, MPM_R(0.5), 2};
+    mpm_real far = 1000;
+    mpm_material m;
+    mpm_fault f = {MPM_OK, "", 0, 0};
+    points p, before;
+    int i;
+    for (i = 0; i < 3; i++) {
+        double work, e, want;
+        m = with_eos(bent, &factor[i]);
+        work = squeeze(&p, &m, 0.8, 40);
+        e = (double)p.energy[0];
+        want = 7e10 * ((double)p.density[0] / 2700 - 1) + 1e4 * e + 0.002 * e * e;
+        CHECK_RELATIVE("a pressure curved in energy", pressure_of(&p, 0), want, 64 * EPS);
+        CHECK_RELATIVE("... closes the energy", 2700 * e, work, 2000 * EPS);
+    }
+    m = with_eos(bent, &far);
+    before = p;
+    counted[MPM_TALLY_ITERATION] = 0;
+    strain(&p, 0, 0.01, 0.01, 0.01, 0, 0, 0);
+    CHECK_EQUAL("a slope far too steep ends at the cap", update(&p, &m, 0, 1, 1e-9, &f), MPM_NOT_CONVERGED);
+    CHECK_EQUAL("... counted", (long)counted[MPM_TALLY_ITERATION], 1);
+    counted[MPM_TALLY_ITERATION] = 0;
+    CHECK_RELATIVE("... with the work of its pressures", 2700 * ((double)p.energy[0] - (double)before.energy[0]),
+                   -(pressure_of(&p, 0) + pressure_of(&before, 0)) / 2 *
+                       (2700 / (double)p.density[0] - 2700 / (double)before.density[0]), 2000 * EPS);
+    strain(&p, 3, -0.2, -0.2, -0.2, 0, 0, 0);
+    before = p;
+    CHECK_EQUAL("its NaN stops the update", update(&p, &m, 0, 5, 1e-9, &f), MPM_ERR_NAN);
+    CHECK_TRUE("... named, with the index", !strcmp(f.field, "pressure of point") && f.index == 3);
+    CHECK_TRUE("... and the block as it was", !memcmp(&p, &before, sizeof p));
+    p.density[3] = 5000;
+    before = p;
+    CHECK_EQUAL("squeezed too far at once", update(&p, &m, 0, 5, 1e-9, &f), MPM_ERR_STATE);
+    CHECK_TRUE("... named, with the index", !strcmp(f.field, "volume increment of point") && f.index == 3);
+    CHECK_TRUE("... and the block as it was", !memcmp(&p, &before, sizeof p));
+}
+
+/* A material is read only: two worlds may share one. */
+static void test_material_is_const(void)
+{
+    mpm_material m = preset("cu", "ptw", mpm_units_si()), before;
+    points p;
+    memcpy(&before, &m, sizeof m);
+    reset(&p, &m);
+    strain(&p, 0, 0, 0, -1e-2, 0, 1e-2, 0);
+    CHECK_EQUAL("a step of a shared material", update(&p, &m, 0, MOST, 1e-9, NULL), MPM_OK);
+    CHECK_TRUE("... with plastic flow", p.plastic_strain[0] > 0);
+    CHECK_TRUE("... leaves it as it was", !memcmp(&before, &m, sizeof m));
+}
+
 int main(void)
 {
     test_elastic();
@@ -683,5 +886,9 @@ int main(void)
     test_faults();
     test_user_strength();
     test_zerilli();
+    test_user_eos();
+    test_grueneisen_through_callback();
+    test_awkward_eos();
+    test_material_is_const();
     return check_end();
 }

@@ -18,7 +18,9 @@ MAKEFLAGS += -r
 
 HEADERS  = $(wildcard mpm*.h)
 EXAMPLES = $(patsubst examples/%.c,build/%,$(wildcard examples/*.c))
-STUDIES  = $(patsubst examples/studies/%.c,build/%,$(wildcard examples/studies/*.c))
+STUDIES  = $(patsubst examples/studies/%.c,build/%,$(wildcard examples/studies/*.c)) build/reproduction
+# A program of several files.
+PARTS    = $(patsubst examples/studies/%.c,build/parts/%.o,$(wildcard examples/studies/reproduction/*.c))
 TESTS    = $(patsubst tests/%.c,build/tests/%,$(wildcard tests/[0-9]*.c))
 FLOATS   = $(patsubst tests/%.c,build/tests/%_f32,$(wildcard tests/[0-9]*.c))
 SCRIPTS  = tests/compile/run.sh $(sort $(wildcard tests/[0-9]*.sh))
@@ -40,9 +42,16 @@ $(EXAMPLES): build/%: examples/%.c
 	@mkdir -p build
 	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $(NOTE) $< -o $@ $(LDFLAGS) -lm
 
-$(STUDIES): build/%: examples/studies/%.c
+$(filter-out build/reproduction,$(STUDIES)): build/%: examples/studies/%.c
 	@mkdir -p build
 	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $(NOTE) $< -o $@ $(LDFLAGS) -lm
+
+$(PARTS): build/parts/%.o: examples/studies/%.c
+	@mkdir -p $(@D)
+	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) $(NOTE) -c $< -o $@
+
+build/reproduction: $(PARTS)
+	$(CC) $(CFLAGS) $(PARTS) -o $@ $(LDFLAGS) -lm
 
 $(FLOATS): build/tests/%_f32: tests/%.c
 	@mkdir -p build/tests
@@ -60,7 +69,7 @@ $(VERIFY): build/verify/%: tests/verify/%.c
 	@mkdir -p build/verify
 	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) -Itests/verify $(NOTE) $< -o $@ $(LDFLAGS) -lm
 
--include $(wildcard build/*.d build/*/*.d)
+-include $(wildcard build/*.d build/*/*.d build/*/*/*.d)
 # The notes may name a source that has moved since: no reason to stop.
 %.c: ;
 

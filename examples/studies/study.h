@@ -373,6 +373,19 @@ static inline int study_need(study *s, const impact_case *c, double *value, char
 
 /* ---- plots --------------------------------------------------------------------------------- */
 
+static inline mpm_draw_curve study_line(const char *name, const mpm_real *x, const mpm_real *y, size_t count,
+                                        mpm_draw_mark mark, int color)
+{
+    mpm_draw_curve l;
+    l.name = name;
+    l.count = count;
+    l.x = x;
+    l.y = y;
+    l.mark = mark;
+    l.color = color;
+    return l;
+}
+
 /* `count` plots in one picture. */
 static inline int study_plots(const char *path, const mpm_draw_plot_desc *d, int count, int columns, const char *note,
                               mpm_fault *fault)

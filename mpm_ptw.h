@@ -27,8 +27,9 @@
        }
 
    CONTENTS
-     choices and parameters    mpm_material and the enums before it
-     presets                   mpm_material_preset, _model, _preset_count, _preset_name, _check
+     choices                   the lists MPM_STRENGTH_LIST, MPM_SHEAR_LIST, MPM_MELT_LIST, MPM_EOS_LIST, ...
+     parameters                mpm_material; laws of your own: mpm_strength_fn, mpm_eos_fn
+     presets                   mpm_material_default, _preset, _model, _preset_count, _preset_name, _check
      the laws, one point       _flow, _flow_stress, _shear_modulus, _melt_temperature,
                                _attempt_rate, _pressure, _hugoniot_pressure, _wave_speeds
      the update, a block       mpm_material_stress
@@ -79,7 +80,7 @@ extern "C" {
 
 /* ---- choices ------------------------------------------------------------------------------- */
 
-/* Each choice is a list of X(enum, "name", "text"), see MPM_NAMES in mpm.h. */
+/* Each choice is a list of X(enum, "name", "text"); MPM_NAMES(MPM_STRENGTH_LIST) is "elastic|linear|...". */
 
 /* The flow stress. */
 #define MPM_STRENGTH_LIST(X)                                                               \
@@ -184,8 +185,8 @@ struct mpm_material;
        static mpm_flow zerilli_flow(const void *context, const mpm_material *m, const mpm_material_state *s)
        {
            const zerilli *c = (const zerilli *)context;
-           mpm_real heat = s->temperature * (c->c4 * log(s->plastic_rate) - c->c3);
-           mpm_real hard = s->plastic_rate > 0 ? c->c2 * sqrt(s->plastic_strain) * exp(heat) : 0;
+           mpm_real heat = s->temperature * (c->c4 * mpm_log(s->plastic_rate) - c->c3);
+           mpm_real hard = s->plastic_rate > 0 ? c->c2 * mpm_sqrt(s->plastic_strain) * mpm_exp(heat) : 0;
            mpm_flow f;
            f.stress = c->c0 + hard;
            f.strain_slope = s->plastic_strain > 0 ? hard / (2 * s->plastic_strain) : 0;
@@ -246,7 +247,7 @@ typedef struct mpm_material {
     mpm_real heat_fraction;  /* chi, the part of plastic work that heats (A 3.44), 0 .. 1 */
     int compression_heating; /* 1: compression (dT = -Gamma0 T dV/V0, for any equation of state but the linear one)
                                 and the work of the bulk viscosity heat too; 0: they do not, as in source A (default).
-                                Tests: 11_update "compression", 24_manufactured "shock" */
+                                Test: 11_update "compression", 24_manufactured "shocks" */
     mpm_real young, poisson; /* for wave speeds and the linear equation of state */
 
     mpm_real shear_modulus;        /* mu0: at T = 0 for MTS, at 300 K and p = 0 otherwise [stress] */
@@ -285,26 +286,28 @@ enum {
 /* ---- presets ------------------------------------------------------------------------------- */
 
 /* An elastic material with nothing set: chi 0.9, shear_floor 1e-3, temperature 298 K, consistent
-   return, proper rotation. Set at least density, young, poisson and shear_modulus. */
+   return, proper rotation. Set at least density, young, poisson and shear_modulus. Test: 10_material "check". */
 MPM_API mpm_material mpm_material_default(void);
 
 /* Fills *m with the named metal and its preferred strength, in the given units.
    name   one of mpm_material_preset_name
    fault  may be NULL
    Returns MPM_OK, MPM_ERR_UNKNOWN (no such name) or MPM_ERR_ARGUMENT (units not > 0); *m is then
-   unchanged. Test: 10_material, "presets". */
-MPM_API mpm_status mpm_material_preset(mpm_material *m, const char *name, const mpm_units *units,
-                                       mpm_fault *fault);
+   unchanged. Test: 10_material "presets". */
+MPM_API mpm_status mpm_material_preset(mpm_material *m, const char *name, const mpm_units *units, mpm_fault *fault);
 
 /* Changes the strength of a preset: "elastic", "linear", "jc", "scg" or "ptw", together with the
    shear modulus and melting law that its published set belongs to. "elastic" and "linear" are the
    textbook solids: constant moduli, linear equation of state, no melting.
    Returns MPM_OK, or MPM_ERR_UNKNOWN when the model does not exist (field "model") or this
-   material has no published set for it (field "model of material"); *m is then unchanged. */
+   material has no published set for it (field "model of material"); MPM_ERR_ARGUMENT for a material
+   that mpm_material_default never filled; *m is then unchanged. Test: 10_material "presets". */
 MPM_API mpm_status mpm_material_model(mpm_material *m, const char *model, mpm_fault *fault);
 
-/* How many presets there are, and the name of the i-th (NULL outside 0 .. count-1). */
+/* How many presets there are. Test: 10_material "presets". */
 MPM_API int mpm_material_preset_count(void);
+
+/* The name of the i-th preset; NULL outside 0 .. count-1. Test: 10_material "presets". */
 MPM_API const char *mpm_material_preset_name(int i);
 
 /* Checks every number the chosen laws read. Bounds are inclusive where published sets sit on them.
@@ -314,36 +317,49 @@ MPM_API mpm_status mpm_material_check(const mpm_material *m, mpm_fault *fault);
 
 /* ---- the laws, for one point ----------------------------------------------------------------- */
 
-/* Flow stress and slopes (A 2.4 - 2.8 for PTW). Zero at and above melting; infinite for an elastic
-   material. No errors: a state out of range gives what the formula gives.
-   Tests: 10_material "flow stress against long double", "limits", "slopes". */
+/* Flow stress and slopes. Zero at and above melting; infinite for an elastic material. No errors: a
+   state out of range gives what the formula gives. With r = rate/(gamma xidot), T^ = T/T_m, PTW is
+     sigma = 2 mu (tau_s + alpha ln(1 - psi exp(-beta - theta eps/(alpha psi))))               (A 2.4)
+     alpha = (s0 - tau_y)/d,  beta = (tau_s - tau_y)/alpha,  psi = exp(beta) - 1               (A 2.5)
+     tau_s = max(s0 - (s0 - sinf) erf(kappa T^ ln(1/r)), s0 r^s1)                              (A 2.7)
+     tau_y = max(y0 - (y0 - yinf) erf(kappa T^ ln(1/r)), min(y1 r^y2, s0 r^s1))                (A 2.7)
+   Test: 10_material "flow stress against long double", "limits", "slopes". */
 MPM_API mpm_flow mpm_material_flow(const mpm_material *m, const mpm_material_state *s);
+
+/* The flow stress alone. Test: 10_material "published and precomputed numbers". */
 MPM_API mpm_real mpm_material_flow_stress(const mpm_material *m, const mpm_material_state *s);
 
-/* Shear modulus [stress] (A 2.6 for MTS), at least shear_floor * shear_modulus. */
+/* Shear modulus [stress], at least shear_floor * shear_modulus: mu0, mu0 - D/(exp(T0/T) - 1) for MTS (A 2.6) or
+   mu0 (1 + A p/eta^(1/3) - B (T - 300 K)) for SCG. Test: 10_material "limits". */
 MPM_API mpm_real mpm_material_shear_modulus(const mpm_material *m, const mpm_material_state *s);
 
-/* Melting temperature [K] at a density > 0 (A 2.9 for SCG); infinite with MPM_MELT_NONE. */
+/* Melting temperature [K] at a density > 0: infinite, T_m0 or, for SCG,
+   T_m0 exp(2 a (1 - 1/eta)) eta^(2 (Gamma0 - a - 1/3)) (A 2.9).
+   Test: 10_material "published and precomputed numbers". */
 MPM_API mpm_real mpm_material_melt_temperature(const mpm_material *m, mpm_real density);
 
-/* xidot [1/time], the rate at which atoms attempt to pass an obstacle (A 2.8). PTW only. */
+/* xidot = (4 pi rho/(3 M))^(1/3) (mu/rho)^(1/2)/2 [1/time], the rate at which atoms attempt to pass an
+   obstacle (A 2.8). PTW only. Test: 10_material "published and precomputed numbers". */
 MPM_API mpm_real mpm_material_attempt_rate(const mpm_material *m, const mpm_material_state *s);
 
-/* Pressure at a density and an internal energy per mass (A 3.42), to *pressure.
+/* Pressure at a density and an internal energy per mass, to *pressure: K mu, or p = A + Gamma0 rho0 e
+   (A 3.42) with A = p_H (1 - Gamma0 mu/(2 (1 + mu))), mu = rho/rho0 - 1, p_H as below, or the caller's.
    Returns MPM_OK; MPM_ERR_STATE for a density <= 0 or past the range of the Hugoniot
    (1 - (s-1) mu <= 0); MPM_ERR_NAN, also where a caller's equation of state says so. *pressure is
    then unchanged. Test: 10_material "pressure and waves". */
 MPM_API mpm_status mpm_material_pressure(const mpm_material *m, mpm_real density, mpm_real energy,
                                          mpm_real *pressure, mpm_fault *fault);
 
-/* Pressure of the reference curve: behind a shock that compresses the material from rest to the
-   given density; in tension the line rho0 c0^2 mu (a caller's: pressure without energy). A caller's equation of state
-   is solved for it, p = p(rho, (p + p0) (1/rho0 - 1/rho)/2): MPM_NOT_CONVERGED at the iteration cap. Other errors
-   as mpm_material_pressure. Test: 10_material "pressure and waves". */
+/* Pressure of the reference curve, behind a shock that compresses the material from rest to the
+   given density: p_H = rho0 c0^2 mu (1 + mu)/(1 - (s - 1) mu)^2; in tension the line rho0 c0^2 mu.
+   A caller's equation of state is solved for it, p = p(rho, (p + p0) (1/rho0 - 1/rho)/2), p0 its
+   pressure at rest; in tension it is p(rho, 0). MPM_NOT_CONVERGED if that ended at the iteration cap.
+   Other errors as mpm_material_pressure. Test: 10_material "pressure and waves". */
 MPM_API mpm_status mpm_material_hugoniot_pressure(const mpm_material *m, mpm_real density,
                                                   mpm_real *pressure, mpm_fault *fault);
 
-/* Speeds of longitudinal and shear waves at a density (A 3.46). Either pointer may be NULL. */
+/* Speeds of longitudinal and shear waves at a density, V_p = ((1 - nu) E/((1 - 2 nu) (1 + nu) rho))^(1/2) and
+   V_s = (E/(2 (1 + nu) rho))^(1/2) (A 3.45). Either pointer may be NULL. Test: 10_material "pressure and waves". */
 MPM_API void mpm_material_wave_speeds(const mpm_material *m, mpm_real density, mpm_real *longitudinal,
                                       mpm_real *shear);
 
@@ -351,14 +367,16 @@ MPM_API void mpm_material_wave_speeds(const mpm_material *m, mpm_real density, m
 
 /* The constitutive update (A 3.38 - 3.44, A1 - A11), an mpm_stress_fn: rotation, elastic trial,
    yield, return to the flow stress, equation of state with implicit energy, adiabatic heating,
-   plastic work.
-   material  a const mpm_material *, valid under mpm_material_check
+   plastic work (A 4.15).
+   material  a const mpm_material *, valid under mpm_material_check; only read, so that bodies, worlds
+             and threads may share one
    The block's tally, unless it is NULL, counts under MPM_TALLY_*.
    Returns MPM_OK; MPM_CLAMPED if a shear modulus was bounded; MPM_NOT_CONVERGED if a return ended
-   at its iteration cap (bracketed: the value is usable), or a caller's equation of state at it; MPM_ERR_ARGUMENT (count < 0, dt <= 0);
+   at its iteration cap (bracketed: the value is usable), or a caller's equation of
+   state did; MPM_ERR_ARGUMENT (count < 0, dt <= 0, a material that mpm_material_default never filled);
    MPM_ERR_NAN, MPM_ERR_STATE with the first bad point in block->fault. Blocks of up to 64 points
    are unchanged on failure; of longer ones, the points before the bad group of 64 are updated.
-   Tests: 11_update. */
+   Test: 11_update. */
 MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *block);
 
 #ifdef __cplusplus
@@ -413,7 +431,7 @@ static inline mpm_status mpm__ptw_marked(const mpm_material *m, mpm_fault *fault
 
 /* Combinations of parameters that no point changes: computed once per block. */
 typedef struct mpm__ptw_shared {
-    const struct mpm__ptw_law *law;
+    const struct mpm__ptw_law *law; /* row of its strength */
     mpm_real melt_exponent;  /* 2 (Gamma0 - a - 1/3) of A 2.9 */
     mpm_real cold;           /* below this temperature nothing in the range eta_low..eta_high melts */
     mpm_real eta_low, eta_high;
@@ -451,7 +469,7 @@ typedef struct mpm__ptw_law {
     int (*preset)(mpm_material *m, const char *metal);             /* its set for a metal, 0: none; NULL: no sets */
 } mpm__ptw_law;
 
-/* ln(rho/rho0) is needed by the melting law and by xidot only. */
+/* T_m = T_m0 exp(2 a (1 - 1/eta)) eta^(2 (Gamma0 - a - 1/3)) (A 2.9). */
 static inline mpm_real mpm__ptw_melt(const mpm_material *m, mpm_real melt_exponent, mpm_real log_eta,
                                      mpm_real eta)
 {
@@ -468,7 +486,7 @@ static inline mpm_real mpm__ptw_shear_mts(const mpm_material *m, mpm_real temper
     return m->shear_modulus - m->shear_d / mpm_expm1(m->shear_t / temperature);
 }
 
-/* mu0 (1 + A p/eta^(1/3) - B (T - 300 K)), Steinberg's form. */
+/* mu0 (1 + A p/eta^(1/3) - B (T - 300 K)) [S]. */
 static inline mpm_real mpm__ptw_shear_scg(const mpm_material *m, mpm_real temperature, mpm_real pressure,
                                           mpm_real eta)
 {
@@ -508,7 +526,8 @@ static inline void mpm__ptw_cold(const mpm_material *m, mpm__ptw_shared *h)
     h->cold *= 1 - 64 * MPM_EPSILON;
 }
 
-/* Everything about a point that does not depend on strain and rate, its shear modulus given. */
+/* Everything about a point that does not depend on strain and rate, its shear modulus given. ln(rho/rho0) is needed
+   by the melting law and by xidot only. */
 static inline mpm__ptw_point mpm__ptw_prepare(const mpm_material *m, const mpm__ptw_shared *h,
                                               const mpm_material_state *s, mpm_real shear)
 {
@@ -534,7 +553,7 @@ typedef struct mpm__ptw_levels {
     mpm_real s, y, s_slope, y_slope;
 } mpm__ptw_levels;
 
-/* The erf terms of A 2.7 at argument x, with dx/dL = slope (<= 0): low + (high - low)(1 - erf). */
+/* The erf terms of A 2.7, s0 - (s0 - sinf) erf x and y0 - (y0 - yinf) erf x, with dx/dL = slope (<= 0). */
 static inline void mpm__ptw_thermal(const mpm_ptw *c, mpm_real x, mpm_real slope, mpm__ptw_levels *v)
 {
     const mpm_real two_over_root_pi = MPM_R(1.12837916709551257390);
@@ -558,8 +577,9 @@ static inline int mpm__ptw_thermal_hidden(const mpm_ptw *c, mpm_real x, mpm_real
     return x >= 0 && s < shock && y < low;
 }
 
-/* A 2.7. T_hat is T/T_m, L = ln r. The shock term s0 r^s1 is computed once, so that tau_s = tau_y
-   exactly where both follow it. */
+/* tau_s = max(s0 - (s0 - sinf) erf x, s0 r^s1), tau_y = max(y0 - (y0 - yinf) erf x, min(y1 r^y2, s0 r^s1)) (A 2.7)
+   with x = kappa T_hat ln(1/r), T_hat = T/T_m, L = ln r. The shock term s0 r^s1 is computed once, so that
+   tau_s = tau_y exactly where both follow it. */
 static inline mpm__ptw_levels mpm__ptw_saturation(const mpm_material *m, const mpm__ptw_shared *h,
                                                   mpm_real T_hat, mpm_real L)
 {
@@ -601,7 +621,7 @@ static inline mpm__ptw_levels mpm__ptw_static_levels(const mpm_ptw *c, mpm_real 
     return v;
 }
 
-/* The Voce limit d = 0: tau = tau_s - (tau_s - tau_y) exp(-theta eps/(tau_s - tau_y)). */
+/* The Voce limit d = 0 of A 2.4: tau = tau_s - (tau_s - tau_y) exp(-theta eps/(tau_s - tau_y)). */
 static inline mpm_flow mpm__ptw_voce(const mpm_ptw *c, const mpm__ptw_levels *v, mpm_real strain)
 {
     mpm_real gap = v->s - v->y, gap_slope = v->s_slope - v->y_slope;
@@ -613,7 +633,8 @@ static inline mpm_flow mpm__ptw_voce(const mpm_ptw *c, const mpm__ptw_levels *v,
     return f;
 }
 
-/* alpha < 0 (tau_y > s0): A 2.4 as printed, its exponential taken out where it would overflow. */
+/* alpha < 0 (tau_y > s0): tau_s + alpha ln(1 - psi exp t), t = -beta - theta eps/(alpha psi) (A 2.4) as printed, the
+   exponential taken out where it would overflow. */
 static inline mpm_flow mpm__ptw_harden_negative(const mpm_ptw *c, const mpm__ptw_levels *v,
                                                 mpm_real strain, mpm_real alpha)
 {
@@ -627,7 +648,7 @@ static inline mpm_flow mpm__ptw_harden_negative(const mpm_ptw *c, const mpm__ptw
     return f;
 }
 
-/* A 2.4 over 2 mu for tau_s > tau_y, written as tau_y + alpha ln W with
+/* A 2.4 over 2 mu for tau_s > tau_y, written as tau = tau_y + alpha ln W with
    W = 1 + psi (1 - exp(-z)), z = theta eps/(alpha psi): the same number, exactly tau_y at zero
    strain. */
 static inline mpm_flow mpm__ptw_harden_positive(const mpm_ptw *c, const mpm__ptw_levels *v,
@@ -649,7 +670,8 @@ static inline mpm_flow mpm__ptw_harden_positive(const mpm_ptw *c, const mpm__ptw
     return f;
 }
 
-/* alpha -> 0 from above (or beta too large for exp): psi (1 - exp(-z)) -> theta eps/alpha. */
+/* alpha -> 0 from above (or beta too large for exp): psi (1 - exp(-z)) -> theta eps/alpha, so that
+   tau = tau_y + alpha ln(1 + theta eps/alpha). */
 static inline mpm_flow mpm__ptw_harden_steep(const mpm_ptw *c, const mpm__ptw_levels *v,
                                              mpm_real strain, mpm_real alpha)
 {
@@ -661,7 +683,8 @@ static inline mpm_flow mpm__ptw_harden_steep(const mpm_ptw *c, const mpm__ptw_le
     return f;
 }
 
-/* A 2.4 over 2 mu with all its limits. */
+/* tau = tau_s + alpha ln(1 - psi exp(-beta - theta eps/(alpha psi))) (A 2.4, 2.5), sigma over 2 mu, with all its
+   limits. */
 static inline mpm_flow mpm__ptw_harden(const mpm_ptw *c, const mpm__ptw_levels *v, mpm_real strain)
 {
     mpm_flow f;
@@ -678,6 +701,7 @@ static inline mpm_flow mpm__ptw_harden(const mpm_ptw *c, const mpm__ptw_levels *
     return mpm__ptw_harden_positive(c, v, strain, alpha);
 }
 
+/* sigma = 2 mu tau(eps, ln r, T_hat), r = rate/(gamma xidot) (A 2.4 - 2.8). */
 static inline mpm_flow mpm__ptw_flow_ptw(const mpm_material *m, const mpm__ptw_shared *h,
                                          const mpm__ptw_point *p)
 {
@@ -712,7 +736,7 @@ static inline int mpm__ptw_overdriven(const mpm__ptw_point *p, mpm_real rate)
 
 /* ---- the other strengths ------------------------------------------------------------------- */
 
-/* sigma = infinity */
+/* sigma = infinity. */
 static inline mpm_flow mpm__ptw_flow_elastic(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
 {
     mpm_flow f;
@@ -724,13 +748,14 @@ static inline mpm_flow mpm__ptw_flow_elastic(const mpm_material *m, const mpm__p
     return f;
 }
 
+/* sigma = strength_fn(point). */
 static inline mpm_flow mpm__ptw_flow_user(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
 {
     (void)h;
     return m->strength_fn(m->strength_context, m, &p->state);
 }
 
-/* sigma = Y + H eps, at least 0 */
+/* sigma = Y + H eps, at least 0. */
 static inline mpm_flow mpm__ptw_flow_linear(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
 {
     mpm_flow f;
@@ -742,6 +767,7 @@ static inline mpm_flow mpm__ptw_flow_linear(const mpm_material *m, const mpm__pt
     return f;
 }
 
+/* sigma >= Y where it hardens. */
 static inline void mpm__ptw_bound_linear(const mpm_material *m, mpm__ptw_bounds *b)
 {
     if (m->linear_hardening >= 0) b->stress = m->linear_yield;
@@ -757,7 +783,7 @@ static inline mpm_real mpm__ptw_slope_jc(const mpm_jc *c, mpm_real strain, mpm_r
     return first > 0 ? c->n * (c->b * mpm_pow(first, c->n)) / first : 0;
 }
 
-/* sigma = (a + b eps^n) (1 + c ln(rate/rate0)) (1 - T*^m), T* = (T - T0)/(T_m - T0) */
+/* sigma = (a + b eps^n) (1 + c ln(rate/rate0)) (1 - T*^m), T* = (T - T0)/(T_m - T0) [JC]. */
 static inline mpm_flow mpm__ptw_flow_jc(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
 {
     const mpm_jc *c = &m->jc;
@@ -774,7 +800,7 @@ static inline mpm_flow mpm__ptw_flow_jc(const mpm_material *m, const mpm__ptw_sh
     return f;
 }
 
-/* sigma = min(y0 (1 + beta eps)^n, ymax) mu/mu0 */
+/* sigma = min(y0 (1 + beta eps)^n, ymax) mu/mu0 [S]. */
 static inline mpm_flow mpm__ptw_flow_scg(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
 {
     const mpm_scg *c = &m->scg;
@@ -788,7 +814,8 @@ static inline mpm_flow mpm__ptw_flow_scg(const mpm_material *m, const mpm__ptw_s
     return f;
 }
 
-/* Concave for n <= 1, so that chords lie below it; for more, the stress at zero strain. */
+/* min(y0 (1 + beta eps)^n, ymax)/mu0: concave for n <= 1, so that chords lie below it; for more, the value at zero
+   strain. */
 static inline void mpm__ptw_bound_scg(const mpm_material *m, mpm__ptw_bounds *b)
 {
     const mpm_scg *c = &m->scg;
@@ -1166,12 +1193,13 @@ static inline mpm__ptw_bounds mpm__ptw_bound(const mpm_material *m, const mpm__p
 
 /* ---- equation of state --------------------------------------------------------------------- */
 
+/* K = E/(3 (1 - 2 nu)). */
 static inline mpm_real mpm__ptw_bulk_modulus(const mpm_material *m)
 {
     return m->young / (3 * (1 - 2 * m->poisson));
 }
 
-/* The reference curve p_ref and the part of it that is not thermal, A of A 3.43. */
+/* The reference curve: p_H = rho0 c0^2 mu (1 + mu)/(1 - (s - 1) mu)^2, in tension rho0 c0^2 mu. */
 static inline mpm_real mpm__ptw_hugoniot(const mpm_material *m, mpm_real mu)
 {
     mpm_real stiff = m->density * m->sound_speed * m->sound_speed;
@@ -1180,6 +1208,7 @@ static inline mpm_real mpm__ptw_hugoniot(const mpm_material *m, mpm_real mu)
     return stiff * mu * (1 + mu) / (range * range);
 }
 
+/* The part of it that is not thermal, A = p_H (1 - Gamma0 mu/(2 (1 + mu))) of A 3.42. */
 static inline mpm_real mpm__ptw_cold_pressure(const mpm_material *m, mpm_real mu)
 {
     mpm_real p = mpm__ptw_hugoniot(m, mu);
@@ -1224,7 +1253,7 @@ static inline mpm_status mpm__ptw_close_energy(const mpm_material *m, mpm_real d
     return MPM_NOT_CONVERGED;
 }
 
-/* The reference curve of a caller's equation of state. */
+/* The reference curve of a caller's equation of state: p = p(rho, e), e = (p + p0) (1/rho0 - 1/rho)/2. */
 static inline mpm_status mpm__ptw_hugoniot_user(const mpm_material *m, mpm_real density, mpm_real *pressure,
                                                 mpm_fault *fault)
 {
@@ -1331,42 +1360,41 @@ typedef struct mpm__ptw_lanes {
     int yielding[MPM__PTW_LANES], yield_count;  /* points that were returned */
 } mpm__ptw_lanes;
 
+/* Names the first value of point i that is not a finite number. */
+static inline mpm_status mpm__ptw_diagnose_numbers(const mpm_block *b, int i)
+{
+    static const char *const name[5] = {"energy of point", "temperature of point", "plastic strain of point",
+                                        "plastic rate of point", "plastic work of point"};
+    const mpm_real *value[5];
+    int j;
+    value[0] = b->energy;
+    value[1] = b->temperature;
+    value[2] = b->plastic_strain;
+    value[3] = b->plastic_rate;
+    value[4] = b->plastic_work;
+    for (j = 0; j < 6; j++) {
+        MPM__PTW_REQUIRE(mpm_want(1, b->fault, "strain increment of point", b->strain[j][i], i));
+        MPM__PTW_REQUIRE(mpm_want(1, b->fault, "stress of point", b->stress[j][i], i));
+        if (j < 3) MPM__PTW_REQUIRE(mpm_want(1, b->fault, "rotation of point", b->spin[j][i], i));
+    }
+    for (j = 0; j < 5; j++) MPM__PTW_REQUIRE(mpm_want(1, b->fault, name[j], value[j][i], i));
+    return MPM_OK;
+}
+
 /* Names what is wrong with point i, slowly; MPM_OK if nothing is. */
 static inline mpm_status mpm__ptw_diagnose(const mpm_material *m, const mpm_block *b, int i)
 {
     mpm_real volume = b->strain[0][i] + b->strain[1][i] + b->strain[2][i];
-    mpm_real old;
-    int j;
-    for (j = 0; j < 6; j++) {
-        if (!mpm_finite(b->strain[j][i]))
-            return mpm_fail(b->fault, MPM_ERR_NAN, "strain increment of point",
-                                 b->strain[j][i], i);
-        if (!mpm_finite(b->stress[j][i]))
-            return mpm_fail(b->fault, MPM_ERR_NAN, "stress of point", b->stress[j][i], i);
-        if (j < 3 && !mpm_finite(b->spin[j][i]))
-            return mpm_fail(b->fault, MPM_ERR_NAN, "rotation of point", b->spin[j][i], i);
-    }
-    if (!mpm_finite(b->energy[i]))
-        return mpm_fail(b->fault, MPM_ERR_NAN, "energy of point", b->energy[i], i);
-    if (!mpm_finite(b->temperature[i]))
-        return mpm_fail(b->fault, MPM_ERR_NAN, "temperature of point", b->temperature[i], i);
-    if (!mpm_finite(b->plastic_strain[i]))
-        return mpm_fail(b->fault, MPM_ERR_NAN, "plastic strain of point", b->plastic_strain[i], i);
-    if (!mpm_finite(b->plastic_rate[i]))
-        return mpm_fail(b->fault, MPM_ERR_NAN, "plastic rate of point", b->plastic_rate[i], i);
-    if (!mpm_finite(b->plastic_work[i]))
-        return mpm_fail(b->fault, MPM_ERR_NAN, "plastic work of point", b->plastic_work[i], i);
-    if (mpm__ptw_eos_range(m, b->density[i], i, b->fault) < 0)
-        return mpm__ptw_eos_range(m, b->density[i], i, b->fault);
+    mpm_real old = b->density[i] * (1 + volume);
+    int gruneisen = m->eos == MPM_EOS_MIE_GRUENEISEN;
+    MPM__PTW_REQUIRE(mpm__ptw_diagnose_numbers(b, i));
+    MPM__PTW_REQUIRE(mpm__ptw_eos_range(m, b->density[i], i, b->fault));
     if (!(b->temperature[i] >= 0))
         return mpm_fail(b->fault, MPM_ERR_STATE, "temperature of point", b->temperature[i], i);
     if (!(b->plastic_strain[i] >= 0))
-        return mpm_fail(b->fault, MPM_ERR_STATE, "plastic strain of point",
-                             b->plastic_strain[i], i);
-    if (!(volume > -1))
-        return mpm_fail(b->fault, MPM_ERR_STATE, "volume increment of point", volume, i);
-    old = b->density[i] * (1 + volume);
-    if (m->eos == MPM_EOS_MIE_GRUENEISEN && !(old + m->gruneisen / 2 * m->density * volume > 0))
+        return mpm_fail(b->fault, MPM_ERR_STATE, "plastic strain of point", b->plastic_strain[i], i);
+    /* A 3.43 divides by 1 + Gamma0 dV/(2 V0) */
+    if (!(volume > -1) || (gruneisen && !(old + m->gruneisen / 2 * m->density * volume > 0)))
         return mpm_fail(b->fault, MPM_ERR_STATE, "volume increment of point", volume, i);
     return MPM_OK;
 }
@@ -1424,7 +1452,8 @@ static inline int mpm__ptw_shear_lanes(const mpm_material *m, const mpm_block *b
     return hits;
 }
 
-/* Splits stress and strain increment into mean and deviator (A3, A4). */
+/* Splits stress and strain increment into mean and deviator: s = sigma - tr(sigma)/3 I (A3),
+   dEps' = dEps - tr(dEps)/3 I (A4). */
 static inline void mpm__ptw_split(const mpm_block *b, mpm__ptw_lanes *a)
 {
     int i, j, k = a->first, n = a->count;
@@ -1473,7 +1502,7 @@ static inline void mpm__ptw_rotate_proper(const mpm_block *b, mpm__ptw_lanes *a)
     }
 }
 
-/* s <- s + W s + s W^T with W the spin increment itself (A2). */
+/* s <- s + W s + s W^T (A2) with W the spin increment itself. */
 static inline void mpm__ptw_rotate_jaumann(const mpm_block *b, mpm__ptw_lanes *a)
 {
     int i, k = a->first;
@@ -1490,7 +1519,7 @@ static inline void mpm__ptw_rotate_jaumann(const mpm_block *b, mpm__ptw_lanes *a
     }
 }
 
-/* Trial deviator s* = s^R + 2 mu dEps' and the square of its von Mises stress (A4, A5). */
+/* Trial deviator s* = s^R + 2 mu dEps' (A1.3) and the square of its von Mises stress, 3/2 s*:s* (A5). */
 static inline void mpm__ptw_try(mpm__ptw_lanes *a)
 {
     int i, j, n = a->count;
@@ -1613,37 +1642,23 @@ static inline int mpm__ptw_is_last(const mpm__ptw_search *q, const mpm_flow *f, 
            (first || seen <= close * q->step);
 }
 
-/* One round of the search. Returns whether it is over; then q->d is the answer, or NaN if the law
-   gave NaN. */
-static inline int mpm__ptw_search_on(const mpm_material *m, const mpm__ptw_shared *h,
-                                     mpm__ptw_search *q, mpm_real per_step)
+/* Moves a search on by f, the law at its increment d: x is the relative step. Returns whether it is over. */
+static inline int mpm__ptw_search_step(const mpm_material *m, mpm__ptw_search *q, const mpm_flow *f)
 {
-    mpm_real stiff = 3 * q->point.shear, close = MPM__PTW_TOLERANCE * q->mises;
-    mpm_real d, residual, slope, inverse, x;
-    mpm_flow f;
-    int over;
-    if (q->point.state.temperature >= q->point.melt) {
-        q->d = q->high; /* no strength: all of the deviator goes */
-        return 1;
-    }
-    if (!q->yields && !(q->d > q->least) && !mpm__ptw_search_yields(m, h, q, per_step)) return 1;
-    if (!(q->d > q->low && q->d <= q->high)) q->d = q->low + (q->high - q->low) / 2;
-    d = q->d;
-    f = mpm__ptw_flow_at(m, h, q, d, per_step);
-    residual = q->mises - stiff * d - f.stress;
+    mpm_real stiff = 3 * q->point.shear, close = MPM__PTW_TOLERANCE * q->mises, d = q->d;
+    mpm_real residual = q->mises - stiff * d - f->stress;
+    mpm_real inverse = 1 / ((stiff + f->strain_slope) * d + f->rate_slope);
+    mpm_real slope = f->strain_slope + f->rate_slope / d, x = residual * inverse;
+    int over = mpm_fabs(residual) <= close;
     if (residual > 0) {
         q->yields = 1;
         q->low = d;
     } else {
         q->high = d;
     }
-    inverse = 1 / ((stiff + f.strain_slope) * d + f.rate_slope);
-    x = residual * inverse;
-    slope = f.strain_slope + f.rate_slope / d;
-    x /= mpm__ptw_max(1 - x * f.rate_slope * inverse / 2, MPM_R(0.25));
-    over = mpm_fabs(residual) <= close;
+    x /= mpm__ptw_max(1 - x * f->rate_slope * inverse / 2, MPM_R(0.25));
     if (m->strength == MPM_STRENGTH_USER) x = over ? 0 : x;
-    else over = over || mpm__ptw_is_last(q, &f, slope, x, close);
+    else over = over || mpm__ptw_is_last(q, f, slope, x, close);
     over = over || q->high - q->low <= q->least;
     q->slope = slope;
     q->d = d + x * d;
@@ -1660,6 +1675,22 @@ static inline int mpm__ptw_search_on(const mpm_material *m, const mpm__ptw_share
     return over || residual != residual;
 }
 
+/* One round of the search. Returns whether it is over; then q->d is the answer, or NaN if the law
+   gave NaN. */
+static inline int mpm__ptw_search_on(const mpm_material *m, const mpm__ptw_shared *h,
+                                     mpm__ptw_search *q, mpm_real per_step)
+{
+    mpm_flow f;
+    if (q->point.state.temperature >= q->point.melt) {
+        q->d = q->high; /* no strength: all of the deviator goes */
+        return 1;
+    }
+    if (!q->yields && !(q->d > q->least) && !mpm__ptw_search_yields(m, h, q, per_step)) return 1;
+    if (!(q->d > q->low && q->d <= q->high)) q->d = q->low + (q->high - q->low) / 2;
+    f = mpm__ptw_flow_at(m, h, q, q->d, per_step);
+    return mpm__ptw_search_step(m, q, &f);
+}
+
 /* sqrt(2/3 e:e): the effective size of lane i's deviatoric strain increment. */
 static inline mpm_real mpm__ptw_effective(const mpm__ptw_lanes *a, int i)
 {
@@ -1672,12 +1703,11 @@ static inline mpm_real mpm__ptw_effective(const mpm__ptw_lanes *a, int i)
     return mpm_sqrt((n2 + 2 * t2) * 2 / 3);
 }
 
-/* The staged return A6 - A8: one explicit estimate of d from the flow stress of level k, then the
-   flow stress at the strain and rate it gives, which may not exceed the trial stress. The flow
-   stress of level k is taken at the rate of the last step or, where nothing flowed then, at the
-   rate `total` of the whole deviatoric strain: taken at rate 0, points on their way to yield would
-   flow again and again, the more often the smaller the step. Even so the scheme loses its way when
-   3 mu d is small against the rate's share of the flow stress (test 11_update "staged").
+/* The staged return: d = (sigma* - sigma_y)/(3 mu + E_p) (A6) with the flow stress of level k, then the flow stress
+   at the strain and rate it gives (A7), s = min(sigma_y/sigma*, 1) s* (A8). The flow stress of level k is taken at the
+   rate of the last step or, where nothing flowed then, at the rate `total` of the whole deviatoric strain: taken at
+   rate 0, points on their way to yield would flow again and again, the more often the smaller the step. Even so the
+   scheme loses its way when 3 mu d is small against the rate's share of the flow stress (test 11_update "staged").
    Sets q->d and returns the stress returned to. */
 static inline mpm_real mpm__ptw_stage(const mpm_material *m, const mpm__ptw_shared *h,
                                       mpm__ptw_search *q, mpm_real total, mpm_real per_step)
@@ -1710,7 +1740,7 @@ static inline int mpm__ptw_suspects(const mpm_material *m, const mpm__ptw_shared
     return n;
 }
 
-/* Takes the answer of a search: increment, flow stress and the scaled deviator go to *a. */
+/* Takes the answer of a search: increment, flow stress and the scaled deviator s = sigma_y/sigma* s* (A8) go to *a. */
 static inline void mpm__ptw_take(const mpm_material *m, const mpm_block *b, mpm__ptw_lanes *a,
                                  const mpm__ptw_search *q, mpm_real flow, mpm_real per_step)
 {
@@ -1744,51 +1774,58 @@ static inline int mpm__ptw_search_all(const mpm_material *m, const mpm__ptw_shar
     return n;
 }
 
+/* The state of lane i, as the laws see it. */
+static inline mpm_material_state mpm__ptw_state(const mpm_block *b, const mpm__ptw_lanes *a, int i)
+{
+    int k = a->first + i;
+    mpm_material_state s;
+    s.plastic_strain = b->plastic_strain[k];
+    s.plastic_rate = b->plastic_rate[k];
+    s.temperature = b->temperature[k];
+    s.density = b->density[k];
+    s.pressure = -a->mean[i];
+    return s;
+}
+
+/* The stress to which a consistent return has come: sigma* - 3 mu d, or none where molten. */
+static inline mpm_real mpm__ptw_returned(const mpm__ptw_search *q)
+{
+    if (!(q->point.state.temperature < q->point.melt)) return 0;
+    return mpm__ptw_max(q->mises - 3 * q->point.shear * q->d, 0);
+}
+
 /* Sorts out the points that may yield and returns them to the flow stress. Touches only *a (and
    counters), so that a failure leaves the block as it was. */
 static inline mpm_status mpm__ptw_yield(const mpm_material *m, const mpm__ptw_shared *h,
                                         const mpm__ptw_bounds *bounds, const mpm_block *b,
                                         mpm__ptw_lanes *a)
 {
-    mpm__ptw_search search[MPM__PTW_LANES];
-    mpm_real flow[MPM__PTW_LANES], per_step = 1 / b->dt;
-    int list[MPM__PTW_LANES + 1], i, n, capped = 0;
+    mpm__ptw_search search[MPM__PTW_LANES], *q;
+    mpm_real per_step = 1 / b->dt;
+    int list[MPM__PTW_LANES + 1], i, n, capped = 0, staged = m->mapping == MPM_RETURN_STAGED;
     a->yield_count = 0;
     if (m->strength == MPM_STRENGTH_ELASTIC) return MPM_OK;
     n = mpm__ptw_suspects(m, h, bounds, b, a, list);
-    for (i = 0; i < n; i++) {
-        int k = a->first + list[i];
-        mpm_material_state s;
-        s.plastic_strain = b->plastic_strain[k];
-        s.plastic_rate = b->plastic_rate[k];
-        s.temperature = b->temperature[k];
-        s.density = b->density[k];
-        s.pressure = -a->mean[list[i]];
-        search[i].point = mpm__ptw_prepare(m, h, &s, a->shear[list[i]]);
-        mpm__ptw_search_begin(&search[i], mpm_sqrt(a->mises2[list[i]]), b->dt, list[i]);
-        if (search[i].d > search[i].least) mpm__ptw_search_guess(m, a, &search[i]);
+    for (i = 0, q = search; i < n; i++, q++) {
+        mpm_material_state s = mpm__ptw_state(b, a, list[i]);
+        q->point = mpm__ptw_prepare(m, h, &s, a->shear[list[i]]);
+        mpm__ptw_search_begin(q, mpm_sqrt(a->mises2[list[i]]), b->dt, list[i]);
+        if (q->d > q->least) mpm__ptw_search_guess(m, a, q);
     }
-    if (m->mapping == MPM_RETURN_STAGED)
-        for (i = 0; i < n; i++)
-            flow[i] = mpm__ptw_stage(m, h, &search[i], mpm__ptw_effective(a, list[i]) * per_step,
-                                     per_step);
-    else
-        capped = mpm__ptw_search_all(m, h, search, n, per_step);
-    for (i = 0; i < n; i++) {
-        mpm__ptw_search *q = &search[i];
-        if (m->mapping == MPM_RETURN_CONSISTENT)
-            flow[i] = q->point.state.temperature < q->point.melt
-                          ? mpm__ptw_max(q->mises - 3 * q->point.shear * q->d, 0) : 0;
-        if (!mpm_finite(q->d) || !mpm_finite(flow[i]))
-            return mpm_fail(b->fault, MPM_ERR_NAN, "flow stress of point", q->d,
-                                 a->first + q->lane);
-        mpm__ptw_take(m, b, a, q, flow[i], per_step);
+    if (!staged) capped = mpm__ptw_search_all(m, h, search, n, per_step);
+    for (i = 0, q = search; i < n; i++, q++) {
+        mpm_real flow = staged ? mpm__ptw_stage(m, h, q, mpm__ptw_effective(a, list[i]) * per_step, per_step)
+                               : mpm__ptw_returned(q);
+        if (!mpm_finite(q->d) || !mpm_finite(flow))
+            return mpm_fail(b->fault, MPM_ERR_NAN, "flow stress of point", q->d, a->first + q->lane);
+        mpm__ptw_take(m, b, a, q, flow, per_step);
     }
     mpm__ptw_count(b, MPM_TALLY_ITERATION, capped);
     return capped ? MPM_NOT_CONVERGED : MPM_OK;
 }
 
-/* Plastic strain, its rate, plastic work (A 4.15) and the heat of it (A 3.44), to the block. */
+/* Plastic strain, its rate, plastic work dW = sigma d (A 4.15) and the heat of it dT = chi sigma d/(rho Cp) (A 3.44),
+   to the block. */
 static inline void mpm__ptw_commit(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a)
 {
     mpm_real per_step = 1 / b->dt;
@@ -1927,38 +1964,47 @@ static inline void mpm__ptw_close(const mpm_material *m, const mpm_block *b, con
     if (m->compression_heating) mpm__ptw_heat_volume(m, b, a);
 }
 
+/* One group of points. A failure leaves the block as it was: only the last two touch it. */
+static inline mpm_status mpm__ptw_update(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_bounds *bounds,
+                                         const mpm_block *b, mpm__ptw_lanes *a)
+{
+    mpm_status yield, pressure;
+    int bounded;
+    mpm__ptw_split(b, a);
+    bounded = mpm__ptw_shear_lanes(m, b, a);
+    if (m->rotation == MPM_ROTATION_PROPER) mpm__ptw_rotate_proper(b, a);
+    else mpm__ptw_rotate_jaumann(b, a);
+    mpm__ptw_try(a);
+    MPM__PTW_REQUIRE(mpm__ptw_screen(m, b, a));
+    yield = mpm__ptw_yield(m, h, bounds, b, a);
+    if (yield < 0) return yield;
+    pressure = mpm__ptw_pressure(m, b, a);
+    if (pressure < 0) return pressure;
+    mpm__ptw_commit(m, b, a);
+    mpm__ptw_close(m, b, a);
+    if (yield > 0 || pressure > 0) return MPM_NOT_CONVERGED;
+    return bounded ? MPM_CLAMPED : MPM_OK;
+}
+
 MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *block)
 {
     const mpm_material *m = (const mpm_material *)material;
-    const mpm_block *b = block;
-    mpm_status status = MPM_OK, s;
-    int bounded = 0;
+    mpm_status worst = MPM_OK, status;
     mpm__ptw_shared h;
     mpm__ptw_bounds bounds;
     mpm__ptw_lanes a;
-    if (b->count < 0)
-        return mpm_fail(b->fault, MPM_ERR_ARGUMENT, "count", (mpm_real)b->count, -1);
-    if (!(b->dt > 0)) return mpm_fail(b->fault, MPM_ERR_ARGUMENT, "dt", b->dt, -1);
-    MPM__PTW_REQUIRE(mpm__ptw_marked(m, b->fault));
+    if (block->count < 0) return mpm_fail(block->fault, MPM_ERR_ARGUMENT, "count", (mpm_real)block->count, -1);
+    if (!(block->dt > 0)) return mpm_fail(block->fault, MPM_ERR_ARGUMENT, "dt", block->dt, -1);
+    MPM__PTW_REQUIRE(mpm__ptw_marked(m, block->fault));
     h = mpm__ptw_share(m);
     bounds = mpm__ptw_bound(m, &h);
-    for (a.first = 0; a.first < b->count; a.first += MPM__PTW_LANES) {
-        a.count = b->count - a.first < MPM__PTW_LANES ? b->count - a.first : MPM__PTW_LANES;
-        mpm__ptw_split(b, &a);
-        bounded += mpm__ptw_shear_lanes(m, b, &a);
-        if (m->rotation == MPM_ROTATION_PROPER) mpm__ptw_rotate_proper(b, &a);
-        else mpm__ptw_rotate_jaumann(b, &a);
-        mpm__ptw_try(&a);
-        if ((s = mpm__ptw_screen(m, b, &a)) < 0) return s;
-        if ((s = mpm__ptw_yield(m, &h, &bounds, b, &a)) < 0) return s;
-        if (s > 0) status = s;
-        if ((s = mpm__ptw_pressure(m, b, &a)) < 0) return s;
-        if (s > 0) status = s;
-        mpm__ptw_commit(m, b, &a);
-        mpm__ptw_close(m, b, &a);
+    for (a.first = 0; a.first < block->count; a.first += MPM__PTW_LANES) {
+        a.count = block->count - a.first < MPM__PTW_LANES ? block->count - a.first : MPM__PTW_LANES;
+        status = mpm__ptw_update(m, &h, &bounds, block, &a);
+        if (status < 0) return status;
+        if (status > worst) worst = status; /* MPM_NOT_CONVERGED rather than MPM_CLAMPED */
     }
-    if (status == MPM_OK && bounded > 0) status = MPM_CLAMPED;
-    return status;
+    return worst;
 }
 
 /* ---- presets ------------------------------------------------------------------------------- */

@@ -10,6 +10,12 @@
 #include "mpm_bond.h"
 #include "mpm_measure.h"
 
+/* The words of an option; of others the lists are the library's. */
+#define IMPACT_SHAPES "sphere|ellipsoid"
+#define IMPACT_MODELS "preset" MPM_STRENGTH_LIST(CASE_BAR)
+#define IMPACT_SYMMETRIES "full|half|quarter"
+#define IMPACT_GEOMETRIES "3d|axisymmetric"
+
 /* What to run. Every member is an option of examples/impact; the defaults are its main job. */
 typedef struct impact_case {
     double diameter, velocity;                     /* um (of the sphere of equal volume), m/s */
@@ -147,15 +153,15 @@ static inline int impact_check(const impact_case *c, char *m, size_t n)
            case_wants(c->gap > -big && c->gap < big, "gap", c->gap, "must be within 1e6 um", m, n) &&
            case_wants(c->margin > -big && c->margin < big, "margin", c->margin, "must be within 1e6", m, n) &&
            case_wants(c->offset > -big && c->offset < big, "grid-offset", c->offset, "must be within 1e6 um", m, n) &&
-           case_knows("sphere|ellipsoid", "shape", c->shape, m, n) &&
-           case_knows("preset|elastic|linear|jc|scg|ptw", "model", c->model, m, n) &&
-           case_knows("none|energy|strain", "bond", c->bond, m, n) &&
-           case_knows("mean|weighted|literal", "bond-average", c->bond_average, m, n) &&
-           case_knows("full|half|quarter", "symmetry", c->symmetry, m, n) &&
-           case_knows("3d|axisymmetric", "geometry", c->geometry, m, n) &&
-           case_knows("linear|gimp", "functions", c->functions, m, n) &&
-           case_knows("ranked|mvg|average|vertical|logistic", "normal", c->normal, m, n) &&
-           case_knows("consistent|staged", "plasticity", c->plasticity, m, n) && impact_fits(c, m, n) &&
+           case_knows(IMPACT_SHAPES, "shape", c->shape, m, n) &&
+           case_knows(IMPACT_MODELS, "model", c->model, m, n) &&
+           case_knows(MPM_NAMES(MPM_BOND_RULE_LIST), "bond", c->bond, m, n) &&
+           case_knows(MPM_NAMES(MPM_BOND_AVERAGE_LIST), "bond-average", c->bond_average, m, n) &&
+           case_knows(IMPACT_SYMMETRIES, "symmetry", c->symmetry, m, n) &&
+           case_knows(IMPACT_GEOMETRIES, "geometry", c->geometry, m, n) &&
+           case_knows(MPM_NAMES(MPM_BASIS_LIST), "functions", c->functions, m, n) &&
+           case_knows(MPM_NAMES(MPM_NORMAL_LIST), "normal", c->normal, m, n) &&
+           case_knows(MPM_NAMES(MPM_RETURN_LIST), "plasticity", c->plasticity, m, n) && impact_fits(c, m, n) &&
            impact_agrees(c, m, n);
 }
 
@@ -170,11 +176,11 @@ static inline mpm_desc impact_grid(const impact_case *c)
     const int32_t below = (int32_t)ceil((c->substrate_height + shift) / c->cell - 1e-9) + (margin > 0 ? 3 : 0);
     const int32_t above = (int32_t)ceil((2 * impact_half_height(c) + c->gap + margin - shift) / c->cell - 1e-9);
     const int rings = !strcmp(c->geometry, "axisymmetric");
-    const int mirrors = case_word("full|half|quarter", c->symmetry); /* y = 0, then x = 0 too */
+    const int mirrors = word_place(IMPACT_SYMMETRIES, c->symmetry); /* y = 0, then x = 0 too */
     mpm_desc d = mpm_desc_default();
     int a;
-    d.geometry = rings ? MPM_AXISYMMETRIC : MPM_3D;
-    d.basis = strcmp(c->functions, "gimp") ? MPM_LINEAR : MPM_GIMP;
+    d.geometry = (mpm_geometry)word_place(MPM_NAMES(MPM_GEOMETRY_LIST), c->geometry);
+    d.basis = (mpm_basis)word_place(MPM_NAMES(MPM_BASIS_LIST), c->functions);
     d.cell = (mpm_real)c->cell;
     for (a = 0; a < 2; a++) {
         const int whole = !rings && mirrors < 2 - a;
@@ -186,7 +192,7 @@ static inline mpm_desc impact_grid(const impact_case *c)
     d.origin[2] = (mpm_real)(shift - below * c->cell);
     d.contact.friction = (mpm_real)c->friction;
     d.contact.touch = c->separation;
-    d.contact.normal = (mpm_normal_rule)case_word(MPM_NAMES(MPM_NORMAL_LIST), c->normal);
+    d.contact.normal = (mpm_normal_rule)word_place(MPM_NAMES(MPM_NORMAL_LIST), c->normal);
     return d;
 }
 
@@ -209,7 +215,7 @@ static inline int impact_metal(mpm_material *m, const impact_case *c, int body, 
         snprintf(message, n, "--model %s: %s has no published set for it", c->model, name);
         return 0;
     }
-    if (!strcmp(c->plasticity, "staged")) m->mapping = MPM_RETURN_STAGED;
+    m->mapping = (mpm_return_mapping)word_place(MPM_NAMES(MPM_RETURN_LIST), c->plasticity);
     m->temperature = (mpm_real)kelvin;
     return 1;
 }
@@ -218,8 +224,8 @@ static inline mpm_bond impact_bond(const impact_case *c)
 {
     const mpm_units units = mpm_units_um_us_ng();
     mpm_bond b = mpm_bond_default(&units);
-    b.rule = (mpm_bond_rule)case_word(MPM_NAMES(MPM_BOND_RULE_LIST), c->bond);
-    b.average = (mpm_bond_average)case_word(MPM_NAMES(MPM_BOND_AVERAGE_LIST), c->bond_average);
+    b.rule = (mpm_bond_rule)word_place(MPM_NAMES(MPM_BOND_RULE_LIST), c->bond);
+    b.average = (mpm_bond_average)word_place(MPM_NAMES(MPM_BOND_AVERAGE_LIST), c->bond_average);
     b.critical = (mpm_real)(b.rule == MPM_BOND_STRAIN ? c->eps_c : c->gc);
     b.critical_rate = (mpm_real)(b.rule == MPM_BOND_STRAIN ? c->epsdot_c : c->gdot);
     b.floor = (mpm_real)c->floor;
@@ -266,12 +272,6 @@ static inline int impact_build(impact *s, const impact_case *c, mpm_desc d, cons
         if (!impact_metal(&s->material[a], c, a, message, n)) return 0;
     particle = impact_body(&s->material[IMPACT_PARTICLE], c, IMPACT_PARTICLE);
     substrate = impact_body(&s->material[IMPACT_SUBSTRATE], c, IMPACT_SUBSTRATE);
-    d.bodies = (int32_t)count + 1;
-    d.points = mpm_shape_count(&d, &substrate.shape, substrate.spacing);
-    for (k = 0; k < count; k++) {
-        for (a = 0; a < 3; a++) particle.shape.center[a] = (mpm_real)center[k][a];
-        d.points += mpm_shape_count(&d, &particle.shape, particle.spacing);
-    }
     status = mpm_init(&s->world, &d, NULL, 0);
     for (k = 0; k < count && status == MPM_OK; k++) {
         for (a = 0; a < 3; a++) particle.shape.center[a] = (mpm_real)center[k][a];

@@ -16,13 +16,13 @@ static inline int impact_options(impact_case *c, option *o)
     option_add(o, &n, "velocity", OPTION_REAL, &c->velocity, "impact velocity, m/s");
     option_add(o, &n, "angle", OPTION_REAL, &c->angle,
                "velocity from the surface normal, degrees (with symmetry half, full)");
-    option_add(o, &n, "shape", OPTION_TEXT, &c->shape, "of the particle: sphere|ellipsoid");
+    option_add_word(o, &n, "shape", &c->shape, IMPACT_SHAPES, "of the particle");
     option_add(o, &n, "aspect", OPTION_REAL, &c->aspect,
                "of an ellipsoid: height over width, at the volume of the sphere");
     option_add(o, &n, "material", OPTION_TEXT, &c->material, "of the particle");
     option_add(o, &n, "substrate-material", OPTION_TEXT, &c->substrate_material,
                "of the substrate; empty: as the particle");
-    option_add(o, &n, "model", OPTION_TEXT, &c->model, "strength of both: preset|elastic|linear|jc|scg|ptw");
+    option_add_word(o, &n, "model", &c->model, IMPACT_MODELS, "strength of both");
     option_add(o, &n, "temperature", OPTION_REAL, &c->temperature, "at the start, K: softens, expands nothing");
     option_add(o, &n, "substrate-temperature", OPTION_REAL, &c->substrate_temperature, "K; 0: as the particle");
     option_add(o, &n, "cell", OPTION_REAL, &c->cell, "grid cell edge, um");
@@ -31,9 +31,9 @@ static inline int impact_options(impact_case *c, option *o)
     option_add(o, &n, "substrate-height", OPTION_REAL, &c->substrate_height, "um");
     option_add(o, &n, "time", OPTION_REAL, &c->time, "simulated time, ns");
     option_add(o, &n, "dt-factor", OPTION_REAL, &c->dt_factor, "time step over the critical step of a 0.5 um cell");
-    option_add(o, &n, "bond", OPTION_TEXT, &c->bond, "energy|strain|none");
-    option_add(o, &n, "bond-average", OPTION_TEXT, &c->bond_average,
-               "D of a node from its surface points: mean|weighted|literal");
+    option_add_word(o, &n, "bond", &c->bond, MPM_NAMES(MPM_BOND_RULE_LIST), "what makes the bond grow");
+    option_add_word(o, &n, "bond-average", &c->bond_average, MPM_NAMES(MPM_BOND_AVERAGE_LIST),
+                    "D of a node from its surface points");
     option_add(o, &n, "gc", OPTION_REAL, &c->gc, "critical bond energy, J/m2");
     option_add(o, &n, "gdot", OPTION_REAL, &c->gdot, "critical bond energy rate, J/m2/us");
     option_add(o, &n, "eps-c", OPTION_REAL, &c->eps_c, "strain bond: critical strain");
@@ -43,14 +43,14 @@ static inline int impact_options(impact_case *c, option *o)
     option_add(o, &n, "bond-length", OPTION_REAL, &c->bond_length, "energy bond: regularising length, um; 0: the cell");
     option_add(o, &n, "bond-width", OPTION_REAL, &c->bond_width,
                "softens the threshold D = 1 of a node over this range; 0: sharp");
-    option_add(o, &n, "symmetry", OPTION_TEXT, &c->symmetry, "full|half (mirror y = 0)|quarter");
-    option_add(o, &n, "geometry", OPTION_TEXT, &c->geometry, "3d|axisymmetric");
-    option_add(o, &n, "functions", OPTION_TEXT, &c->functions, "shape functions: linear|gimp");
+    option_add_word(o, &n, "symmetry", &c->symmetry, IMPACT_SYMMETRIES, "of the model, with mirrors y = 0, x = 0");
+    option_add_word(o, &n, "geometry", &c->geometry, IMPACT_GEOMETRIES, "of grid and points");
+    option_add_word(o, &n, "functions", &c->functions, MPM_NAMES(MPM_BASIS_LIST), "shape functions");
     option_add(o, &n, "friction", OPTION_REAL, &c->friction, "Coulomb coefficient between the bodies");
-    option_add(o, &n, "normal", OPTION_TEXT, &c->normal, "contact normal: ranked|mvg|average|vertical|logistic");
+    option_add_word(o, &n, "normal", &c->normal, MPM_NAMES(MPM_NORMAL_LIST), "contact normal");
     option_add(o, &n, "separation", OPTION_FLAG, &c->separation,
                "contact where the points themselves touch, not where they share a node");
-    option_add(o, &n, "plasticity", OPTION_TEXT, &c->plasticity, "return mapping: consistent|staged");
+    option_add_word(o, &n, "plasticity", &c->plasticity, MPM_NAMES(MPM_RETURN_LIST), "return mapping");
     option_add(o, &n, "gap", OPTION_REAL, &c->gap, "distance of the bodies at the start, um");
     option_add(o, &n, "margin", OPTION_REAL, &c->margin, "free grid around the bodies, particle diameters");
     option_add(o, &n, "grid-offset", OPTION_REAL, &c->offset, "height of a grid plane above the interface, um");

@@ -87,26 +87,24 @@ int main(int argc, char **argv)
 {
     const char *name = "al", *model = "", *curve = "";
     double strain = 0.1, rate = 1e6, temperature = 300, density = 0, energy = 0;
-    int show_list = 0, status;
-    const option options[] = {
-        {"material", OPTION_TEXT, &name, "preset"},
-        {"model", OPTION_TEXT, &model, "see --list; empty: the preset's own"},
-        {"strain", OPTION_REAL, &strain, "effective plastic strain"},
-        {"rate", OPTION_REAL, &rate, "effective plastic strain rate, 1/s"},
-        {"temperature", OPTION_REAL, &temperature, "K"},
-        {"density", OPTION_REAL, &density, "kg/m^3; 0: the material's own"},
-        {"energy", OPTION_REAL, &energy, "internal energy, J/kg"},
-        {"curve", OPTION_TEXT, &curve, "file for the stress-strain curve"},
-        {"list", OPTION_FLAG, &show_list, "materials and their models"},
-    };
+    int show_list = 0, n = 0, status;
+    option options[9];
     const mpm_units si = mpm_units_si();
     mpm_material m;
     mpm_material_state s;
     mpm_fault fault;
     mpm_real pressure, hugoniot;
 
-    status = options_parse(argc, argv, "Prints the properties of a material at one state.", options,
-                           (int)(sizeof options / sizeof options[0]));
+    option_add(options, &n, "material", OPTION_TEXT, &name, "preset");
+    option_add(options, &n, "model", OPTION_TEXT, &model, "see --list; empty: the preset's own");
+    option_add(options, &n, "strain", OPTION_REAL, &strain, "effective plastic strain");
+    option_add(options, &n, "rate", OPTION_REAL, &rate, "effective plastic strain rate, 1/s");
+    option_add(options, &n, "temperature", OPTION_REAL, &temperature, "K");
+    option_add(options, &n, "density", OPTION_REAL, &density, "kg/m^3; 0: the material's own");
+    option_add(options, &n, "energy", OPTION_REAL, &energy, "internal energy, J/kg");
+    option_add(options, &n, "curve", OPTION_TEXT, &curve, "file for the stress-strain curve");
+    option_add(options, &n, "list", OPTION_FLAG, &show_list, "materials and their models");
+    status = options_parse(argc, argv, "Prints the properties of a material at one state.", options, n);
     if (status) return status < 0;
     if (show_list) return list();
     if (check_input("strain", strain, 0, 1) || check_input("rate", rate, 0, 1) ||

@@ -9,15 +9,46 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef enum option_type { OPTION_REAL, OPTION_LONG, OPTION_TEXT, OPTION_FLAG } option_type;
+/* ---- words ----------------------------------------------------------------------------------- */
+
+/* The place of a word in a list "one|two|three", or -1. */
+static inline int word_place(const char *list, const char *word)
+{
+    int place = 0;
+    while (*list) {
+        const size_t n = strcspn(list, "|");
+        if (n == strlen(word) && !strncmp(list, word, n)) return place;
+        place++;
+        list += n + (list[n] == '|');
+    }
+    return -1;
+}
+
+/* Whether a command line may choose a word of a list. "user" wants a function, which only a program can give. */
+static inline int word_known(const char *list, const char *word)
+{
+    return word_place(list, word) >= 0 && strcmp(word, "user");
+}
+
+/* How many characters of a list to show: all but a last "|user". */
+static inline int words_shown(const char *list)
+{
+    const size_t n = strlen(list);
+    return (int)(n > 5 && !strcmp(list + n - 5, "|user") ? n - 5 : n);
+}
+
+/* ---- the table ------------------------------------------------------------------------------- */
+
+typedef enum option_type { OPTION_REAL, OPTION_LONG, OPTION_TEXT, OPTION_WORD, OPTION_FLAG } option_type;
 
 /* One option: --name VALUE (or --name alone for a flag). `value` points to a double, a long, a
-   const char * or an int, holding the default. */
+   const char * (of a text or a word) or an int, holding the default. */
 typedef struct option {
     const char *name;
     option_type type;
     void *value;
     const char *help;
+    const char *words; /* of OPTION_WORD: "one|two|three" */
 } option;
 
 /* Puts an option behind the n of a table. */
@@ -27,7 +58,16 @@ static inline void option_add(option *o, int *n, const char *name, option_type t
     o[*n].type = type;
     o[*n].value = value;
     o[*n].help = help;
+    o[*n].words = "";
     (*n)++;
+}
+
+/* The same of an option whose value is one of some words. */
+static inline void option_add_word(option *o, int *n, const char *name, const char **value, const char *words,
+                                   const char *help)
+{
+    option_add(o, n, name, OPTION_WORD, value, help);
+    o[*n - 1].words = words;
 }
 
 /* The option of that name among n. */
@@ -52,7 +92,8 @@ static inline void option_text(const option *o, char *buffer, size_t n)
     switch (o->type) {
     case OPTION_REAL: snprintf(buffer, n, "%.15g", *(double *)o->value); break;
     case OPTION_LONG: snprintf(buffer, n, "%ld", *(long *)o->value); break;
-    case OPTION_TEXT: snprintf(buffer, n, "%s", *(const char **)o->value); break;
+    case OPTION_TEXT:
+    case OPTION_WORD: snprintf(buffer, n, "%s", *(const char **)o->value); break;
     case OPTION_FLAG: snprintf(buffer, n, "%s", *(int *)o->value ? "on" : "off"); break;
     }
 }
@@ -64,7 +105,9 @@ static inline void options_help(const char *program, const char *about, const op
     for (i = 0; i < n; i++) {
         char text[256];
         option_text(&o[i], text, sizeof text);
-        printf("  --%-20s %s [%s]\n", o[i].name, o[i].help, text);
+        printf("  --%-20s ", o[i].name);
+        if (o[i].type == OPTION_WORD) printf("%.*s: ", words_shown(o[i].words), o[i].words);
+        printf("%s [%s]\n", o[i].help, text);
     }
     printf("  --%-20s %s\n", "help", "this text");
 }
@@ -74,6 +117,10 @@ static inline int option_set(const option *o, const char *text)
 {
     char *end = NULL;
     errno = 0;
+    if (o->type == OPTION_WORD && !word_known(o->words, text)) {
+        fprintf(stderr, "error: --%s %s: not one of %.*s\n", o->name, text, words_shown(o->words), o->words);
+        return -1;
+    }
     if (o->type == OPTION_REAL) {
         double v = strtod(text, &end);
         if (end == text || *end || isnan(v)) goto bad;

@@ -75,7 +75,7 @@ static inline int options_match(const char *summary, const option *o, const opti
     if (!block) return 0;
     for (k = 0; k < n; k++) {
         const char *at = json_value(block, o[k].name);
-        const int quoted = o[k].type == OPTION_TEXT || o[k].type == OPTION_FLAG;
+        const int quoted = o[k].type != OPTION_REAL && o[k].type != OPTION_LONG;
         size_t length;
         option_text(&o[k], text, sizeof text);
         length = strlen(text);

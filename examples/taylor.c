@@ -24,12 +24,13 @@ static void describe_picture(const taylor *s, const taylor_case *c, const output
 /* With the places at which the points began. */
 static int write_frame(const taylor *s, const taylor_case *c, output *o)
 {
+    const mpm_world *w = &s->world;
     mpm_io_field start[2];
     output_picture p;
-    start[0] = mpm_io_scalar("radius at the start (mm)", s->world.points.user[0], 1);
-    start[1] = mpm_io_scalar("height at the start (mm)", s->world.points.user[1], 1);
+    int k;
+    for (k = 0; k < 2; k++) start[k] = mpm_io_scalar(w->user_name[k], w->points.user[k], 1);
     describe_picture(s, c, o, &p);
-    return output_frame(o, &s->world, start, 2, &p);
+    return output_frame(o, w, start, 2, &p);
 }
 
 static int write_picture(const taylor *s, const taylor_case *c, output *o)
@@ -146,32 +147,36 @@ static int finish(const taylor *s, const taylor_case *c, output *o, const option
     return ok;
 }
 
+static int options_of(taylor_case *c, option *o)
+{
+    int n = 0;
+    option_add(o, &n, "length", OPTION_REAL, &c->length, "mm");
+    option_add(o, &n, "diameter", OPTION_REAL, &c->diameter, "mm");
+    option_add(o, &n, "velocity", OPTION_REAL, &c->velocity, "impact velocity, m/s");
+    option_add(o, &n, "temperature", OPTION_REAL, &c->temperature, "at the start, K");
+    option_add(o, &n, "material", OPTION_TEXT, &c->material, "preset; build/material --list shows them");
+    option_add_word(o, &n, "model", &c->model, MPM_NAMES(MPM_STRENGTH_LIST), "strength");
+    option_add_word(o, &n, "wall", &c->wall, TAYLOR_WALLS, "the foot stays on it, or it may leave");
+    option_add(o, &n, "friction", OPTION_REAL, &c->friction, "Coulomb coefficient of a wall in contact");
+    option_add_word(o, &n, "geometry", &c->geometry, TAYLOR_GEOMETRIES, "in 3D a quarter");
+    option_add_word(o, &n, "functions", &c->functions, MPM_NAMES(MPM_BASIS_LIST), "shape functions");
+    option_add(o, &n, "cell", OPTION_REAL, &c->cell, "grid cell edge, mm");
+    option_add(o, &n, "spacing", OPTION_REAL, &c->spacing, "distance of material points, mm");
+    option_add(o, &n, "time", OPTION_REAL, &c->time, "simulated time, us");
+    option_add(o, &n, "dt-factor", OPTION_REAL, &c->dt_factor, "time step over the critical step of the cell");
+    return n;
+}
+
 int main(int argc, char **argv)
 {
     taylor_case c = taylor_case_default();
     output o = output_of("build/taylor-out", "taylor", "mm", "us", 1e-3);
-    option options[20] = {
-        {"length", OPTION_REAL, &c.length, "mm"},
-        {"diameter", OPTION_REAL, &c.diameter, "mm"},
-        {"velocity", OPTION_REAL, &c.velocity, "impact velocity, m/s"},
-        {"temperature", OPTION_REAL, &c.temperature, "at the start, K"},
-        {"material", OPTION_TEXT, &c.material, "preset; build/material --list shows them"},
-        {"model", OPTION_TEXT, &c.model, "elastic|linear|jc|scg|ptw"},
-        {"wall", OPTION_TEXT, &c.wall, "sliding: the foot stays on it; contact: it may leave"},
-        {"friction", OPTION_REAL, &c.friction, "Coulomb coefficient of a wall in contact"},
-        {"geometry", OPTION_TEXT, &c.geometry, "axisymmetric|3d (a quarter)"},
-        {"functions", OPTION_TEXT, &c.functions, "shape functions: linear|gimp"},
-        {"cell", OPTION_REAL, &c.cell, "grid cell edge, mm"},
-        {"spacing", OPTION_REAL, &c.spacing, "distance of material points, mm"},
-        {"time", OPTION_REAL, &c.time, "simulated time, us"},
-        {"dt-factor", OPTION_REAL, &c.dt_factor, "time step over the critical step of the cell"},
-    };
-    int n = 0, parsed, ok;
+    option options[20];
+    int n = options_of(&c, options), parsed, ok;
     const char *about = "A metal cylinder hits a rigid wall end on: Taylor's test.\n"
                         "Writes summary.json, profile.csv, taylor.png, taylor.pvd (ParaView) and frames.";
     char message[300];
     taylor s;
-    while (options[n].name) n++;
     output_options(&o, options, &n);
     parsed = options_parse(argc, argv, about, options, n);
     if (parsed) return parsed < 0 ? 1 : 0;

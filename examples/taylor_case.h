@@ -11,6 +11,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* The words of an option; of others the lists are the library's. */
+#define TAYLOR_WALLS "sliding|contact"
+#define TAYLOR_GEOMETRIES "axisymmetric|3d"
+
 /* What to run. Every member is an option of examples/taylor; the defaults are the benchmark that codes
    compare on: copper, flow stress 400 + 100 eps MPa, 80 us, a foot that slides on the wall.
    On the wall: as a symmetry plane, which the foot never leaves (the published computations do this:
@@ -45,10 +49,11 @@ static inline taylor_case taylor_case_default(void)
     return c;
 }
 
-/* A case being run. user[0] and user[1] of the points hold the radius and height they began at. */
+/* A case being run. */
 typedef struct taylor {
     mpm_world world;
     mpm_material material;
+    int first_radius, first_height;       /* user fields of the points: where they began */
     double spacing, cell, radius, length; /* as used, mm: multiples of the spacing */
     mpm_real dt;                          /* ms */
     long steps;
@@ -74,11 +79,11 @@ static inline int taylor_check(const taylor_case *c, char *m, size_t n)
            case_wants(c->time > 0 && c->time < 1e9, "time", c->time, "must be > 0 us", m, n) &&
            case_wants(c->dt_factor > 0 && c->dt_factor <= 1, "dt-factor", c->dt_factor, "must be in (0, 1]", m, n) &&
            case_wants(c->friction >= 0 && c->friction < 1e30, "friction", c->friction, "must be >= 0", m, n) &&
-           case_knows("sliding|contact", "wall", c->wall, m, n) &&
+           case_knows(TAYLOR_WALLS, "wall", c->wall, m, n) &&
            case_wants(!(c->friction > 0) || !strcmp(c->wall, "contact"), "friction", c->friction,
                       "a sliding wall has none: add --wall contact", m, n) &&
-           case_knows("axisymmetric|3d", "geometry", c->geometry, m, n) &&
-           case_knows("linear|gimp", "functions", c->functions, m, n);
+           case_knows(TAYLOR_GEOMETRIES, "geometry", c->geometry, m, n) &&
+           case_knows(MPM_NAMES(MPM_BASIS_LIST), "functions", c->functions, m, n);
 }
 
 /* Preset and model. Returns 1, or 0 with a message. */
@@ -91,7 +96,7 @@ static inline int taylor_material(mpm_material *material, const taylor_case *c, 
                  mpm_status_text(MPM_ERR_UNKNOWN));
         return 0;
     }
-    if (!case_knows("elastic|linear|jc|scg|ptw", "model", c->model, message, n)) return 0;
+    if (!case_knows(MPM_NAMES(MPM_STRENGTH_LIST), "model", c->model, message, n)) return 0;
     if (mpm_material_model(material, c->model, &fault) != MPM_OK) {
         snprintf(message, n, "--model %s: no published set for --material %s", c->model, c->material);
         return 0;
@@ -104,33 +109,20 @@ static inline int taylor_material(mpm_material *material, const taylor_case *c, 
 static inline mpm_desc taylor_grid(const taylor *s, const taylor_case *c)
 {
     mpm_desc d = mpm_desc_default();
-    d.geometry = strcmp(c->geometry, "3d") ? MPM_AXISYMMETRIC : MPM_3D;
-    d.basis = strcmp(c->functions, "gimp") ? MPM_LINEAR : MPM_GIMP;
+    d.geometry = (mpm_geometry)word_place(MPM_NAMES(MPM_GEOMETRY_LIST), c->geometry);
+    d.basis = (mpm_basis)word_place(MPM_NAMES(MPM_BASIS_LIST), c->functions);
     d.cell = (mpm_real)s->cell;
     d.cells[0] = d.cells[1] = (int32_t)ceil(4 * s->radius / s->cell) + 4;
     d.cells[2] = (int32_t)ceil((s->length + 4 * s->radius) / s->cell) + 4;
     d.side[0] = d.side[2] = MPM_SIDE_SYMMETRY;
     d.side[4] = strcmp(c->wall, "contact") ? MPM_SIDE_SYMMETRY : MPM_SIDE_WALL;
     d.wall_friction = (mpm_real)c->friction;
-    d.bodies = 1;
-    d.user_fields = 2;
     return d;
 }
 
-/* Builds the scene. Returns 1, or 0 with a message; then nothing is left to free. */
-static inline int taylor_begin(taylor *s, const taylor_case *c, char *message, size_t n)
+static inline mpm_body_desc taylor_bar(taylor *s, const taylor_case *c)
 {
     mpm_body_desc bar = mpm_body_desc_default();
-    mpm_points *p;
-    mpm_desc d;
-    mpm_status status;
-    int32_t i;
-    memset(s, 0, sizeof *s);
-    if (!taylor_check(c, message, n) || !taylor_material(&s->material, c, message, n)) return 0;
-    s->radius = c->diameter / 2;
-    s->spacing = s->radius / floor(s->radius / c->spacing + 0.5);
-    s->cell = c->cell / c->spacing * s->spacing;
-    s->length = s->spacing * floor(c->length / s->spacing + 0.5);
     bar.shape = mpm_cylinder(0, 0, 0, (mpm_real)s->radius, (mpm_real)s->length);
     bar.spacing = (mpm_real)s->spacing;
     bar.density = s->material.density;
@@ -139,20 +131,46 @@ static inline int taylor_begin(taylor *s, const taylor_case *c, char *message, s
     bar.stress = mpm_material_stress;
     bar.material = &s->material;
     mpm_material_wave_speeds(&s->material, s->material.density, &bar.wave_p, &bar.wave_s);
+    return bar;
+}
+
+/* Notes in each point where it begins. */
+static inline mpm_status taylor_note(taylor *s)
+{
+    const mpm_points *p = &s->world.points;
+    int32_t i;
+    s->first_radius = mpm_field_take(&s->world, "radius at the start (mm)");
+    s->first_height = mpm_field_take(&s->world, "height at the start (mm)");
+    if (s->first_radius < 0 || s->first_height < 0) return MPM_ERR_MEMORY;
+    for (i = 0; i < p->count; i++) {
+        p->user[s->first_radius][i] = (mpm_real)sqrt((double)(p->x[0][i] * p->x[0][i] + p->x[1][i] * p->x[1][i]));
+        p->user[s->first_height][i] = p->x[2][i];
+    }
+    return MPM_OK;
+}
+
+/* Builds the scene. Returns 1, or 0 with a message; then nothing is left to free. */
+static inline int taylor_begin(taylor *s, const taylor_case *c, char *message, size_t n)
+{
+    mpm_body_desc bar;
+    mpm_desc d;
+    mpm_status status;
+    memset(s, 0, sizeof *s);
+    if (!taylor_check(c, message, n) || !taylor_material(&s->material, c, message, n)) return 0;
+    s->radius = c->diameter / 2;
+    s->spacing = s->radius / floor(s->radius / c->spacing + 0.5);
+    s->cell = c->cell / c->spacing * s->spacing;
+    s->length = s->spacing * floor(c->length / s->spacing + 0.5);
+    bar = taylor_bar(s, c);
     d = taylor_grid(s, c);
-    d.points = mpm_shape_count(&d, &bar.shape, bar.spacing);
     status = mpm_material_check(&s->material, &s->world.fault);
     if (status == MPM_OK) status = mpm_init(&s->world, &d, NULL, 0);
     if (status == MPM_OK) status = mpm_body_add(&s->world, &bar);
+    if (status == MPM_OK) status = taylor_note(s);
     if (status != MPM_OK) {
         mpm_io_fault_text(message, n, &s->world.fault);
         mpm_free(&s->world);
         return 0;
-    }
-    p = &s->world.points;
-    for (i = 0; i < p->count; i++) {
-        p->user[0][i] = (mpm_real)sqrt((double)(p->x[0][i] * p->x[0][i] + p->x[1][i] * p->x[1][i]));
-        p->user[1][i] = p->x[2][i];
     }
     s->dt = mpm_time_step(&s->world, (mpm_real)c->dt_factor);
     s->steps = (long)ceil(c->time * 1e-3 / (double)s->dt - 1e-9);
@@ -220,8 +238,8 @@ static inline void taylor_layers(const taylor *s, taylor_layer *layer, long laye
     int32_t i;
     memset(layer, 0, (size_t)layers * sizeof *layer);
     for (i = 0; i < p->count; i++) {
-        double x = (double)p->x[0][i], y = (double)p->x[1][i], r0 = (double)p->user[0][i];
-        long k = (long)((double)p->user[1][i] / s->spacing);
+        double x = (double)p->x[0][i], y = (double)p->x[1][i], r0 = (double)p->user[s->first_radius][i];
+        long k = (long)((double)p->user[s->first_height][i] / s->spacing);
         if (k >= layers) k = layers - 1;
         taylor_layer_add(&layer[k], r0, sqrt(x * x + y * y), (double)p->x[2][i], (double)p->mass[i],
                          r0 > s->radius - 2.1 * s->spacing);

@@ -183,6 +183,7 @@ int main(void)
     refused("--model jc", "no published set");
     refused("--bond strain --eps-c -1", "-1");
     refused("--bond glue", "glue");
+    refused("--bond user", "none|energy|strain\n"); /* a rule of one's own is a program's */
     refused("--shell 0", "--shell 0");
     refused("--nonsense 1", "--nonsense");
     refused("--frames 10000", "--frames 10000");

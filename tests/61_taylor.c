@@ -15,14 +15,14 @@ static int run(const char *options)
 }
 
 /* Option and value must be in the message, and the folder must not be made. */
-static void refused(const char *option, const char *value)
+static void refused(const char *name, const char *value)
 {
     char line[300];
     const char *said;
-    snprintf(line, sizeof line, "%s %s --out build/tests/taylor-bad", option, value);
+    snprintf(line, sizeof line, "%s %s --out build/tests/taylor-bad", name, value);
     CHECK_TRUE(line, run(line) != 0);
     said = text_of("build/tests/taylor.err");
-    CHECK_TRUE("... with a message naming option and value", strstr(said, option) && strstr(said, value));
+    CHECK_TRUE("... with a message naming option and value", strstr(said, name) && strstr(said, value));
     CHECK_TRUE("... and nothing written", !*text_of("build/tests/taylor-bad/summary.json"));
 }
 

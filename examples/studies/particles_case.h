@@ -100,7 +100,7 @@ static inline int particles_place(particles_case *q, double spread, double heigh
 static inline int particles_mirrored(const particles_case *q, char *message, size_t n)
 {
     const int rings = !strcmp(q->base.geometry, "axisymmetric");
-    const int mirrors = rings ? 0 : case_word("full|half|quarter", q->base.symmetry); /* y = 0, then x = 0 too */
+    const int mirrors = rings ? 0 : word_place(IMPACT_SYMMETRIES, q->base.symmetry); /* y = 0, then x = 0 too */
     long k;
     int a;
     for (k = 0; k < q->count; k++)
@@ -118,7 +118,6 @@ static inline int particles_mirrored(const particles_case *q, char *message, siz
 static inline int particles_begin(impact *s, const particles_case *q, char *message, size_t n)
 {
     impact_case room = q->base; /* one case whose grid holds all */
-    mpm_desc d;
     long k;
     memset(s, 0, sizeof *s);
     if (!impact_check(&q->base, message, n)) return 0;
@@ -135,11 +134,12 @@ static inline int particles_begin(impact *s, const particles_case *q, char *mess
         room.substrate_diameter = fmax(room.substrate_diameter, 2 * reach);
         room.gap = fmax(room.gap, x[2] - impact_half_height(&q->base));
     }
-    d = impact_grid(&room);
-    d.user_fields = 1; /* whom a point bonded to */
-    if (!impact_build(s, &q->base, d, q->center, q->count, message, n)) return 0;
-    s->bond.partner = 0;
-    return 1;
+    if (!impact_build(s, &q->base, impact_grid(&room), q->center, q->count, message, n)) return 0;
+    s->bond.partner = mpm_field_take(&s->world, "bonded to");
+    if (s->bond.partner >= 0) return 1;
+    snprintf(message, n, "no memory to note whom the points bond to");
+    mpm_free(&s->world);
+    return 0;
 }
 
 /* What became of a particle. */
@@ -243,8 +243,8 @@ static inline int particles_frame(const impact *s, particles_case *q)
     long k;
     int ok;
     if (!partner) return complain("no memory for output");
-    for (i = 0; i < p->count; i++) partner[i] = (int32_t)p->user[0][i] - 1;
-    field = mpm_io_int32("bonded to", partner); /* the body; -1: none */
+    for (i = 0; i < p->count; i++) partner[i] = (int32_t)p->user[s->bond.partner][i] - 1;
+    field = mpm_io_int32(s->world.user_name[s->bond.partner], partner); /* the body; -1: none */
     for (k = 0; k < q->count; k++) {
         edge = fmax(edge, fabs(q->center[k][0]) + width);
         top = fmax(top, q->center[k][2] + high);

@@ -15,15 +15,6 @@ static void meet(mpm_desc *d, ground g)
     d->contact.touch = 1;
 }
 
-/* A step, with room made for nodes when it is missing. */
-static mpm_status advance(mpm_world *w, double dt)
-{
-    mpm_status s;
-    while ((s = mpm_step(w, (mpm_real)dt)) == MPM_ERR_FULL)
-        if (mpm_reserve(w, NULL, 0) != MPM_OK) break;
-    return s;
-}
-
 /* ---- the inclined plane ---------------------------------------------------------------------- */
 
 static const double g = 9.81, slope = 30, ramp = 0.3;
@@ -49,7 +40,6 @@ static void incline_begin(mpm_world *w, mpm_material *m, rider what, ground on, 
     mpm_body_desc b = scene_body(m, mpm_box(MPM_R(0.5), 0, 0, MPM_R(2.5), 1, 1), cell / 2, 0), slab = b;
     d.geometry = what == BALL ? MPM_3D : MPM_PLANE_STRAIN;
     d.basis = MPM_GIMP;
-    d.points = 100000;
     d.side[2] = MPM_SIDE_SYMMETRY;
     d.side[4] = on == WALL ? MPM_SIDE_WALL : MPM_SIDE_FIXED;
     d.wall_friction = d.contact.friction = (mpm_real)mu;
@@ -94,7 +84,7 @@ static motion go_down(rider what, ground on, double cell, double young, double m
     motion r;
     incline_begin(&w, &m, what, on, cell, mu);
     do lean(&w);
-    while ((double)w.time < time && advance(&w, dt) >= 0);
+    while ((double)w.time < time && mpm_step(&w, (mpm_real)dt) >= 0);
     r.along = mean_velocity(&w, 0, 0) / ((double)w.time - ramp / 2);
     r.spin = 0.5 * spin_of(&w, 0) / ((double)w.time - ramp / 2);
     mpm_free(&w);
@@ -182,7 +172,6 @@ static impact hertz(ground on, int n, double v)
     impact r = {0, 0, 0, 0, depth};
     mpm_world w;
     int i, last = 0;
-    d.points = 200000;
     d.geometry = MPM_AXISYMMETRIC;
     d.basis = MPM_GIMP;
     d.side[0] = MPM_SIDE_SYMMETRY;
@@ -197,7 +186,7 @@ static impact hertz(ground on, int n, double v)
     }
     weight = mpm_body_totals(&w, 0).mass;
     start = mean_velocity(&w, 0, 2);
-    while ((double)w.time < 1.5 * cell / v + 1.3 * 2.943 * depth / v && last < MOMENTS && advance(&w, dt) >= 0)
+    while ((double)w.time < 1.5 * cell / v + 1.3 * 2.943 * depth / v && last < MOMENTS && mpm_step(&w, (mpm_real)dt) >= 0)
         history[last++] = mean_velocity(&w, 0, 2) - start;
     if (last == 0) history[last++] = NAN; /* it failed: so do the rows */
     for (i = 0; i < last; i++) {

@@ -154,7 +154,7 @@ static mpm_material unit_solid(solid *m)
 {
     mpm_material al = mpm_material_default();
     al.density = 1;
-    al.poisson = 0.33;
+    al.poisson = MPM_R(0.33);
     al.young = (1 + al.poisson) * (1 - 2 * al.poisson) / (1 - al.poisson);
     al.shear_modulus = al.young / (2 * (1 + al.poisson));
     m->mu = al.shear_modulus;
@@ -178,7 +178,6 @@ static int plate(mpm_world *w, const solid *m, mpm_material *al, const packet *k
     mpm_body_desc b = scene_body(al, mpm_box(0, 0, 0, (mpm_real)k->width, 1, (mpm_real)height), 0.5, 0);
     d.geometry = MPM_PLANE_STRAIN;
     d.side[0] = d.side[1] = MPM_SIDE_SYMMETRY;
-    d.points = mpm_shape_count(&d, &b.shape, b.spacing);
     b.absorb = MPM_FACE_BOTTOM;
     b.absorb_normal = (mpm_real)k->a;
     b.absorb_shear = (mpm_real)k->b;
@@ -246,7 +245,6 @@ static double area_acting(mpm_material *al, int absorb, double a, double b, int 
         d.origin[0] = d.origin[1] = 0;
         d.side[0] = d.side[2] = MPM_SIDE_SYMMETRY;
     }
-    d.points = mpm_shape_count(&d, &c.shape, c.spacing);
     c.velocity[axis] = 1;
     c.absorb = absorb;
     c.absorb_normal = (mpm_real)(a / (double)c.wave_p);

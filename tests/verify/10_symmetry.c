@@ -93,11 +93,10 @@ static int begin(scene *s, const telling *t)
                                    (mpm_real)(6 * s->length));
         block.absorb = MPM_FACE_BOTTOM | MPM_FACE_RIM;
     }
-    d.points = mpm_shape_count(&d, &ball.shape, ball.spacing) + mpm_shape_count(&d, &block.shape, block.spacing);
     if (mpm_init(&s->world, &d, NULL, 0) != MPM_OK) return 0;
     if (mpm_body_add(&s->world, &ball) != MPM_OK || mpm_body_add(&s->world, &block) != MPM_OK) return 0;
     for (a = 0; a < 3; a++) {
-        s->start[a] = (mpm_real *)malloc((size_t)d.points * sizeof(mpm_real));
+        s->start[a] = (mpm_real *)malloc((size_t)s->world.points.count * sizeof(mpm_real));
         if (!s->start[a]) return 0;
         for (i = 0; i < s->world.points.count; i++) s->start[a][s->world.points.id[i]] = s->world.points.x[a][i];
     }

@@ -10,6 +10,8 @@
 #define MPM_IMPLEMENTATION
 #include "reproduction.h"
 
+#define BUDGETS "quick|desk|full" /* QUICK, DESK, FULL */
+
 /* X(name, what says it), in the order of the page. */
 #define PART_LIST(X)                                                                                   \
     X(conv, convergence) X(dt, time_steps) X(jet, jets) X(substrate, substrates) X(crit, critical)     \
@@ -83,7 +85,7 @@ static int options(work *w, int argc, char **argv)
     w->data = "docs/data";
     w->page = "docs/reproduction.md";
     w->only = w->desk = "";
-    option_add(o, &n, "budget", OPTION_TEXT, &w->budget_name, "quick|desk|full");
+    option_add_word(o, &n, "budget", &w->budget_name, BUDGETS, "how much of it: an hour, nine hours, days");
     option_add(o, &n, "only", OPTION_TEXT, &w->only, "parts that the page then holds: none" PARTS "; empty: all");
     option_add(o, &n, "desk", OPTION_TEXT, &w->desk, "parts that a quick budget runs as desk does");
     option_add(o, &n, "limit", OPTION_LONG, &w->s.limit, "stop after so many new runs; < 0: never");
@@ -104,10 +106,8 @@ int main(int argc, char **argv)
     if (parsed) return parsed < 0;
     w.text = text;
     w.room = sizeof text;
-    w.budget = case_word("quick|desk|full", w.budget_name);
-    if (!case_knows("quick|desk|full", "budget", w.budget_name, w.message, sizeof w.message) ||
-        !parts_known(&w, "only", w.only) || !parts_known(&w, "desk", w.desk))
-        return !complain(w.message);
+    w.budget = word_place(BUDGETS, w.budget_name);
+    if (!parts_known(&w, "only", w.only) || !parts_known(&w, "desk", w.desk)) return !complain(w.message);
     if (mpm_io_make_directory(w.data, &w.fault) < 0) return !report(&w.fault, w.data);
     status = parts(&w);
     if (status > 0) status = write_page(&w);

@@ -377,10 +377,18 @@ typedef mpm_status (*mpm_stress_fn)(const void *material, const mpm_block *block
     X(MPM_NORMAL_FIXED, "vertical", "along z: of two bodies the higher-numbered lies below") \
     X(MPM_NORMAL_LOGISTIC, "logistic", "of the plane that parts their points best (Nairn, Hammerquist, Smith 2020)")
 
+/* When contact and walls act in a step. The consistent scheme takes approach out of the grid at all three levels of
+   velocity, and gives the points only what the new forces ask for: a rebound is never faster than the impact. The
+   thesis's gives them all that stands in P(k+1) and strains with what MUSL maps back: simple, with energy to spare. */
+#define MPM_SCHEME_LIST(X)                                                       \
+    X(MPM_SCHEME_CONSISTENT, "consistent", "on P(k), P(k+1) and MUSL's velocities, all bodies of a node together") \
+    X(MPM_SCHEME_THESIS, "thesis", "on P(k+1) alone, one pair after the other (A 3.31)")
+
 typedef enum mpm_geometry { MPM_GEOMETRY_LIST(MPM_LIST_ENUM) MPM_GEOMETRIES } mpm_geometry;
 typedef enum mpm_basis { MPM_BASIS_LIST(MPM_LIST_ENUM) MPM_BASES } mpm_basis;
 typedef enum mpm_side { MPM_SIDE_LIST(MPM_LIST_ENUM) MPM_SIDE_KINDS } mpm_side;
 typedef enum mpm_contact_law { MPM_CONTACT_LIST(MPM_LIST_ENUM) MPM_CONTACT_LAWS } mpm_contact_law;
+typedef enum mpm_scheme { MPM_SCHEME_LIST(MPM_LIST_ENUM) MPM_SCHEMES } mpm_scheme;
 typedef enum mpm_normal_rule { MPM_NORMAL_LIST(MPM_LIST_ENUM) MPM_NORMAL_RULES } mpm_normal_rule;
 
 /* ---- shapes -------------------------------------------------------------------------------- */
@@ -456,6 +464,7 @@ typedef struct mpm_desc {
     mpm_side side[6];        /* x low, x high, y low, y high, z low, z high */
     mpm_real wall_friction;  /* Coulomb coefficient of MPM_SIDE_WALL, >= 0 */
     mpm_contact contact;     /* of every pair of bodies without a rule of its own: mpm_contact_set */
+    mpm_scheme scheme;       /* of contact and walls */
     mpm_real gravity[3];     /* [length/time^2] */
     mpm_real mass_cutoff;    /* nodes lighter than this share of a mean point's mass are passed over:
                                 beyond it lie numbers too small to divide by (GIMP's outermost nodes) */
@@ -567,15 +576,18 @@ typedef struct mpm_node {
     int32_t index;         /* number of the node in the grid */
     int32_t next;          /* next slot of this node, or -1 */
     int32_t body;
-    int32_t flags;         /* bit s: on side s of the grid; MPM_NODE_CONTACT */
-    int32_t touch;         /* its record in world.touch, or -1: at contact nodes only */
+    int32_t flags;         /* bit s: on side s of the grid; MPM_NODE_CONTACT; bit 8 + s: wall s pushed */
+    int32_t touch;         /* its record in world.touch, or -1: at contact nodes and walls only */
 } mpm_node;
 
 #define MPM_NODE_CONTACT 64
 
-/* What a slot carries besides where bodies meet. */
+/* What a slot carries besides where bodies meet, or meet a wall. */
 typedef struct mpm_touch {
     mpm_real gradient[3];  /* sum of m grad N (A 3.30): out of the body */
+    mpm_real shift[3];     /* added to the momentum of level k, without a force on the points */
+    mpm_real inner[3];     /* internal force and dampers */
+    mpm_real cut[3];       /* added to the velocity of MUSL, so that no strain goes through contact */
     mpm_real work[2];      /* for your sums over points, 0 after mpm_contact_find (mpm_bond.h: D and weights) */
     int32_t pair;          /* first pair of the node; those of one node follow each other */
 } mpm_touch;
@@ -600,6 +612,7 @@ typedef struct mpm_pair {
                             mpm_contact_find and mpm_contact_apply, as mpm_bond.h does */
     mpm_real limit;      /* largest impulse of the hold [mass length/time]; 0: none */
     mpm_real impulse[3]; /* momentum that a got and b gave in this step */
+    mpm_real settled[3], next[3]; /* what a got so far at the level of velocity being settled, and shall get */
     int held;            /* 1 if the hold gave it */
 } mpm_pair;
 
@@ -655,7 +668,7 @@ typedef struct mpm_world {
     mpm_node *node;          /* slots */
     int32_t nodes, node_capacity;
     mpm_touch *touch;
-    int32_t touches;
+    int32_t touches, touch_capacity, walls_possible;
     mpm_run *run;
     int32_t *slot;           /* per run: support[0]*support[1]*support[2] slots */
     int32_t runs, run_capacity, sorted_runs;
@@ -1176,25 +1189,77 @@ MPM_API void mpm_node_push(mpm_world *w, int32_t slot, mpm_real j[3])
     mpm__give(w, &w->node[slot], j);
 }
 
-/* A rigid wall: takes the momentum into it away, and through friction part of the tangential. */
+/* 1 if a node lies at a rigid wall. */
+static inline int mpm__at_wall(const mpm_world *w, const mpm_node *n)
+{
+    int s, found = 0;
+    for (s = 0; s < 6; s++) found |= (n->flags >> s & 1) && w->desc.side[s] == MPM_SIDE_WALL;
+    return found;
+}
+
+/* The record of a node where a wall or another body may act, made before they do. */
+static inline mpm_touch *mpm__touch(mpm_world *w, mpm_node *n)
+{
+    mpm_touch *t;
+    int d;
+    if (n->touch < 0) {
+        n->touch = w->touches++;
+        t = &w->touch[n->touch];
+        memset(t, 0, sizeof *t);
+        for (d = 0; d < 3; d++) t->inner[d] = n->force[d] - n->reaction[d] / w->dt - n->mass * w->desc.gravity[d];
+    }
+    return &w->touch[n->touch];
+}
+
+/* Which way wall s pushes: +1, -1. */
+static inline mpm_real mpm__wall_sign(int s) { return s & 1 ? MPM_R(-1.0) : MPM_R(1.0); }
+
+/* A rigid wall takes away the momentum into it; friction takes up to wall_friction times as much of the tangential.
+   In the consistent scheme what stands in P(k) is taken from the grid alone, as at a mirror: the points get what
+   the new forces ask for. */
+static inline void mpm__wall(mpm_world *w, mpm_node *n, int s)
+{
+    const int axis = s / 2;
+    mpm_touch *t = mpm__touch(w, n);
+    const mpm_real old = n->momentum[axis] - n->force[axis] * w->dt;
+    mpm_real slip = 0, keep, jn, j[3] = {0, 0, 0};
+    int d;
+    if (w->desc.scheme == MPM_SCHEME_CONSISTENT && mpm__wall_sign(s) * old < 0) {
+        n->momentum[axis] -= old;
+        t->shift[axis] -= old;
+    }
+    jn = -mpm__wall_sign(s) * n->momentum[axis];
+    if (jn <= 0) return;
+    n->flags |= 256 << s;
+    j[axis] = -n->momentum[axis];
+    for (d = 0; d < 3; d++)
+        if (d != axis) slip += n->momentum[d] * n->momentum[d];
+    slip = mpm_sqrt(slip);
+    keep = slip > w->desc.wall_friction * jn ? 1 - w->desc.wall_friction * jn / slip : 0;
+    for (d = 0; d < 3; d++)
+        if (d != axis) j[d] = (keep - 1) * n->momentum[d];
+    mpm__give(w, n, j);
+}
+
 static inline void mpm__walls(mpm_world *w, mpm_node *n)
 {
-    int s, d;
+    int s;
+    for (s = 0; s < 6; s++)
+        if ((n->flags >> s & 1) && w->desc.side[s] == MPM_SIDE_WALL) mpm__wall(w, n, s);
+}
+
+/* No strain through a wall: the velocity that MUSL maps back loses what goes into it, and in the consistent scheme
+   all of its normal part while the wall pushes. */
+static inline void mpm__walls_mapped(mpm_world *w, mpm_node *n)
+{
+    int s;
     for (s = 0; s < 6; s++) {
-        const int axis = s / 2;
-        mpm_real out, slip = 0, keep, jn, j[3] = {0, 0, 0};
+        mpm_real *v = &n->velocity[s / 2];
+        const int pushes = w->desc.scheme == MPM_SCHEME_CONSISTENT && (n->flags >> (8 + s) & 1);
         if (!(n->flags >> s & 1) || w->desc.side[s] != MPM_SIDE_WALL) continue;
-        out = (s & 1) ? -n->momentum[axis] : n->momentum[axis];
-        if (out >= 0) continue;
-        jn = -out;
-        j[axis] = -n->momentum[axis];
-        for (d = 0; d < 3; d++)
-            if (d != axis) slip += n->momentum[d] * n->momentum[d];
-        slip = mpm_sqrt(slip);
-        keep = slip > w->desc.wall_friction * jn ? 1 - w->desc.wall_friction * jn / slip : 0;
-        for (d = 0; d < 3; d++)
-            if (d != axis) j[d] = (keep - 1) * n->momentum[d];
-        mpm__give(w, n, j);
+        if (!pushes && mpm__wall_sign(s) * *v >= 0) continue;
+        w->touch[n->touch].cut[s / 2] -= *v;
+        *v = 0;
     }
 }
 
@@ -1696,15 +1761,13 @@ MPM_API const mpm_contact *mpm_contact_of(const mpm_world *w, int32_t a, int32_t
 }
 
 /* Makes a slot one of a contact node. */
-static inline void mpm__touch_begin(mpm_world *w, int32_t slot, int32_t pair)
+static inline void mpm__meet(mpm_world *w, int32_t slot, int32_t pair)
 {
-    mpm_node *n = &w->node[slot];
-    mpm_touch *t;
-    if (n->touch >= 0) return;
-    n->flags |= MPM_NODE_CONTACT;
-    n->touch = w->touches++;
-    t = &w->touch[n->touch];
-    memset(t, 0, sizeof *t);
+    mpm_touch *t = mpm__touch(w, &w->node[slot]);
+    if (w->node[slot].flags & MPM_NODE_CONTACT) return;
+    w->node[slot].flags |= MPM_NODE_CONTACT;
+    memset(t->gradient, 0, sizeof t->gradient);
+    memset(t->work, 0, sizeof t->work);
     t->pair = pair;
 }
 
@@ -1723,8 +1786,8 @@ static inline void mpm__pairs_at(mpm_world *w, int32_t i)
             pair->a = a;
             pair->b = b;
             pair->rule = rule;
-            mpm__touch_begin(w, a, first);
-            mpm__touch_begin(w, b, first);
+            mpm__meet(w, a, first);
+            mpm__meet(w, b, first);
             w->pairs++;
         }
 }
@@ -1737,7 +1800,7 @@ static inline void mpm__contact_runs(mpm_world *w)
     int s;
     for (i = 0; i < w->runs; i++)
         for (s = 0; s < reach; s++)
-            if (w->node[w->slot[(size_t)i * (size_t)reach + (size_t)s]].touch >= 0)
+            if (w->node[w->slot[(size_t)i * (size_t)reach + (size_t)s]].flags & MPM_NODE_CONTACT)
                 w->run[i].flags |= MPM_NODE_CONTACT;
 }
 
@@ -1745,7 +1808,8 @@ MPM_API void mpm_contact_find(mpm_world *w)
 {
     int32_t i;
     int planes = 0, gaps = 0;
-    w->pairs = w->touches = 0;
+    w->pairs = 0;
+    for (i = 0; i < w->nodes; i++) w->node[i].flags &= ~MPM_NODE_CONTACT;
     for (i = 0; i < w->nodes; i++)
         if (w->head[w->node[i].index] == i && w->node[i].next >= 0) mpm__pairs_at(w, i);
     if (w->pairs == 0) return;
@@ -1835,7 +1899,7 @@ static inline void mpm__hold(const mpm_pair *p, mpm_real *j)
     for (d = 0; d < 3; d++) j[d] *= keep;
 }
 
-/* The impulse on a that the rule of a pair asks for; 0 for none. */
+/* The impulse on a that the rule of a pair asks for in the thesis's scheme; 0 for none. */
 static inline int mpm__contact_impulse(const mpm_world *w, mpm_pair *p, mpm_real *j)
 {
     const mpm_contact *c = p->rule;
@@ -1850,17 +1914,209 @@ static inline int mpm__contact_impulse(const mpm_world *w, mpm_pair *p, mpm_real
     return approaching || p->held;
 }
 
-MPM_API void mpm_contact_apply(mpm_world *w)
+/* The levels of velocity at which the consistent scheme settles contact: P(k), P(k+1), and MUSL's. */
+enum { MPM__OLD, MPM__NEW, MPM__MAPPED };
+
+/* Component d of a node's momentum at a level. */
+static inline mpm_real mpm__at_level(const mpm_world *w, const mpm_node *n, int d, int level)
+{
+    if (level == MPM__MAPPED) return n->mass * n->velocity[d];
+    return level == MPM__OLD ? n->momentum[d] - n->force[d] * w->dt : n->momentum[d];
+}
+
+/* Momentum j to a and -j to b at a level. Only that of P(k+1) goes to the points. */
+static inline void mpm__settle_add(mpm_world *w, mpm_pair *p, int level, mpm_real *j)
+{
+    mpm_node *a = &w->node[p->a], *b = &w->node[p->b];
+    mpm_touch *ta = &w->touch[a->touch], *tb = &w->touch[b->touch];
+    int d;
+    mpm__constrain(w, a, j, NULL);
+    if (level == MPM__NEW) mpm_pair_push(w, p, j);
+    for (d = 0; d < 3 && level == MPM__OLD; d++) {
+        a->momentum[d] += j[d];
+        b->momentum[d] -= j[d];
+        ta->shift[d] += j[d];
+        tb->shift[d] -= j[d];
+    }
+    for (d = 0; d < 3 && level == MPM__MAPPED; d++) {
+        a->velocity[d] += j[d] / a->mass;
+        b->velocity[d] -= j[d] / b->mass;
+        ta->cut[d] += j[d] / a->mass;
+        tb->cut[d] -= j[d] / b->mass;
+    }
+}
+
+/* Whether a pair is one body at a level: welded, or held by all of a bond that has not slipped. */
+static inline int mpm__is_one(const mpm_pair *p, int level)
+{
+    const mpm_real *j = p->impulse;
+    if (p->rule->law == MPM_CONTACT_WELD) return 1;
+    if (!(p->hold >= 1)) return 0;
+    if (!(p->limit > 0) || level == MPM__NEW) return 1;
+    return level == MPM__MAPPED &&
+           j[0] * j[0] + j[1] * j[1] + j[2] * j[2] < p->limit * p->limit * (1 - 64 * MPM_EPSILON);
+}
+
+/* What a held pair's whole impulse j may be: compression without limit, the rest as far as the hold bears. */
+static inline void mpm__bear(const mpm_pair *p, mpm_real *j)
+{
+    const mpm_real along = j[0] * p->normal[0] + j[1] * p->normal[1] + j[2] * p->normal[2];
+    const mpm_real push = along < 0 ? along : 0;
+    mpm_real pull[3], size = 0;
+    int d;
+    if (!(p->limit > 0)) return;
+    for (d = 0; d < 3; d++) {
+        pull[d] = j[d] - push * p->normal[d];
+        size += pull[d] * pull[d];
+    }
+    size = mpm_sqrt(size);
+    for (d = 0; d < 3 && size > p->limit; d++) j[d] = push * p->normal[d] + pull[d] * (p->limit / size);
+}
+
+/* 1 if a pair was pressed together at P(k+1), by more than round-off beside a cell per step. */
+static inline int mpm__pressed(const mpm_world *w, const mpm_pair *p)
+{
+    const mpm_real ma = w->node[p->a].mass, mb = w->node[p->b].mass, *j = p->impulse, *n = p->normal;
+    const mpm_real least = 4096 * MPM_EPSILON * ma * mb / (ma + mb) * w->desc.cell / w->dt;
+    return -(j[0] * n[0] + j[1] * n[1] + j[2] * n[2]) > least;
+}
+
+/* Turns the whole impulse j that would stop a pair at a level into what its rule allows. */
+static inline void mpm__allow(const mpm_world *w, const mpm_pair *p, int level, mpm_real *j)
+{
+    const mpm_real *n = p->normal;
+    const mpm_real press = -(j[0] * n[0] + j[1] * n[1] + j[2] * n[2]);
+    mpm_real t[3], size = 0, keep = 0;
+    int d;
+    for (d = 0; d < 3; d++) {
+        t[d] = j[d] + press * n[d];
+        size += t[d] * t[d];
+    }
+    size = mpm_sqrt(size);
+    if (p->rule->law == MPM_CONTACT_STICK) keep = 1;
+    else if (level == MPM__NEW) keep = size > p->rule->friction * press ? p->rule->friction * press / size : 1;
+    if (press > 0 || (level == MPM__MAPPED && mpm__pressed(w, p))) /* strained neither into each other nor apart */
+        for (d = 0; d < 3; d++) j[d] = keep * t[d] - press * n[d];
+    else
+        for (d = 0; d < 3; d++) j[d] = 0;
+}
+
+/* What a pair's impulse at a level should be, seen from the velocities as they are: `share` of the way to where it
+   would stop the pair, as far as its rule allows. Returns the size of the change. */
+static inline mpm_real mpm__settle_pair(const mpm_world *w, mpm_pair *p, int level, mpm_real share)
+{
+    const mpm_node *a = &w->node[p->a], *b = &w->node[p->b];
+    const mpm_real ma = a->mass, mb = b->mass;
+    mpm_real size = 0;
+    int d;
+    for (d = 0; d < 3; d++) {
+        const mpm_real stop = ma * mpm__at_level(w, b, d, level) - mb * mpm__at_level(w, a, d, level);
+        p->next[d] = p->settled[d] + share * stop / (ma + mb);
+    }
+    if (!mpm__is_one(p, level)) mpm__allow(w, p, level, p->next);
+    else if (level == MPM__NEW && p->rule->law != MPM_CONTACT_WELD) mpm__bear(p, p->next);
+    for (d = 0; d < 3; d++) {
+        const mpm_real change = mpm_fabs(p->next[d] - p->settled[d]);
+        size = change > size ? change : size;
+    }
+    return size;
+}
+
+static inline void mpm__settle_take(mpm_world *w, mpm_pair *p, int level)
+{
+    mpm_real change[3];
+    int d;
+    for (d = 0; d < 3; d++) {
+        change[d] = p->next[d] - p->settled[d];
+        p->settled[d] = p->next[d];
+    }
+    mpm__settle_add(w, p, level, change);
+}
+
+/* Whether the consistent scheme settles a pair: it has a law, and its bodies touch or are held together. */
+static inline int mpm__settles(const mpm_pair *p)
+{
+    if (p->rule->law == MPM_CONTACT_NONE || p->rule->law == MPM_CONTACT_USER) return 0;
+    return p->rule->law == MPM_CONTACT_WELD || p->hold >= 1 || !(p->rule->touch && p->separation > 0);
+}
+
+#define MPM__SETTLE_SWEEPS 200
+
+/* Settles all pairs of a node at a level, [first, last): all of them seen from the same velocities, again and again
+   until nothing changes. So it does not matter how bodies are numbered. Of n bodies each pair goes 2/n of its way:
+   two stop each other at once. */
+static inline void mpm__settle_node(mpm_world *w, int32_t first, int32_t last, int level)
+{
+    mpm_real change, size, start = 0, bodies = 2;
+    int32_t i;
+    int sweep;
+    while (bodies * (bodies - 1) / 2 < (mpm_real)(last - first)) bodies += 1;
+    for (i = first; i < last; i++) memset(w->pair[i].settled, 0, sizeof w->pair[i].settled);
+    for (sweep = 0; sweep < MPM__SETTLE_SWEEPS; sweep++) {
+        for (change = 0, i = first; i < last; i++) {
+            if (!mpm__settles(&w->pair[i])) continue;
+            size = mpm__settle_pair(w, &w->pair[i], level, 2 / bodies);
+            change = size > change ? size : change;
+        }
+        if (!(change > 0)) return;
+        for (i = first; i < last; i++)
+            if (mpm__settles(&w->pair[i])) mpm__settle_take(w, &w->pair[i], level);
+        if (sweep == 0) start = change;
+        if (last - first == 1 || !(change > 2 * MPM_EPSILON * start)) return;
+    }
+}
+
+static inline void mpm__settle(mpm_world *w, int level)
+{
+    int32_t i, last;
+    for (i = 0; i < w->pairs; i = last) {
+        const int32_t index = w->node[w->pair[i].a].index;
+        for (last = i + 1; last < w->pairs && w->node[w->pair[last].a].index == index; last++) {}
+        mpm__settle_node(w, i, last, level);
+    }
+}
+
+/* The thesis's scheme: each pair once, with P(k+1) as the pairs before it left it. */
+static inline void mpm__apply_in_turn(mpm_world *w)
 {
     int32_t i;
-    w->held = 0;
     for (i = 0; i < w->pairs; i++) {
         mpm_pair *p = &w->pair[i];
         mpm_real j[3];
-        if (!mpm__contact_impulse(w, p, j)) continue;
-        mpm_pair_push(w, p, j);
-        w->held += p->held;
+        if (mpm__contact_impulse(w, p, j)) mpm_pair_push(w, p, j);
     }
+}
+
+/* The consistent scheme: laws of the user's and softened holds act on P(k+1) once, the others are settled. */
+static inline void mpm__apply_settled(mpm_world *w)
+{
+    int32_t i;
+    for (i = 0; i < w->pairs; i++) w->pair[i].held = w->pair[i].hold >= 1;
+    mpm__settle(w, MPM__OLD);
+    for (i = 0; i < w->pairs; i++) {
+        mpm_pair *p = &w->pair[i];
+        mpm_real j[3];
+        if (p->rule->law == MPM_CONTACT_USER && p->rule->fn(p->rule->context, w, p, j)) mpm_pair_push(w, p, j);
+    }
+    mpm__settle(w, MPM__NEW);
+    for (i = 0; i < w->pairs; i++) {
+        mpm_pair *p = &w->pair[i];
+        mpm_real j[3];
+        if (!(p->hold > 0 && p->hold < 1) || p->rule->law >= MPM_CONTACT_WELD || mpm_pair_stick(w, p, j) > 0) continue;
+        p->held = 1;
+        mpm__hold(p, j);
+        mpm_pair_push(w, p, j);
+    }
+    for (i = 0; i < w->nodes; i++)
+        if ((w->node[i].flags & MPM_NODE_CONTACT) && mpm__at_wall(w, &w->node[i])) mpm__walls(w, &w->node[i]);
+}
+
+MPM_API void mpm_contact_apply(mpm_world *w)
+{
+    int32_t i;
+    if (w->desc.scheme == MPM_SCHEME_THESIS) mpm__apply_in_turn(w);
+    else mpm__apply_settled(w);
+    for (w->held = 0, i = 0; i < w->pairs; i++) w->held += w->pair[i].held;
 }
 
 /* ---- back to the points ---------------------------------------------------------------------- */
@@ -1916,9 +2172,10 @@ MPM_API void mpm_g2p(mpm_world *w)
 }
 
 /* The mean nodal velocity of the step, through which nodal forces work on the points. */
-static inline mpm_real mpm__mean_velocity(const mpm_node *n, int d, mpm_real dt)
+static inline mpm_real mpm__mean_velocity(const mpm_world *w, const mpm_node *n, int d)
 {
-    return MPM_R(0.5) * ((n->momentum[d] - n->force[d] * dt) / n->mass + n->velocity[d]);
+    const mpm_real shift = n->touch < 0 ? 0 : w->touch[n->touch].shift[d];
+    return MPM_R(0.5) * ((n->momentum[d] - n->force[d] * w->dt - shift) / n->mass + n->velocity[d]);
 }
 
 /* Work of gravity, where sides let nodes move. */
@@ -1934,14 +2191,13 @@ static inline void mpm__account_gravity(mpm_world *w)
         if (!(n->mass > 0)) continue;
         for (d = 0; d < 3; d++) j[d] = n->mass * g[d] * dt;
         if (n->flags) mpm__constrain(w, n, j, NULL);
-        for (d = 0; d < 3; d++) w->ledger.work += (double)(j[d] * mpm__mean_velocity(n, d, dt));
+        for (d = 0; d < 3; d++) w->ledger.work += (double)(j[d] * mpm__mean_velocity(w, n, d));
     }
 }
 
 /* Energy lost in contact, in bonds and at walls. */
 static inline void mpm__account(mpm_world *w)
 {
-    const mpm_real dt = w->dt;
     int32_t i;
     int d;
     for (i = 0; i < w->pairs; i++) {
@@ -1949,7 +2205,7 @@ static inline void mpm__account(mpm_world *w)
         const mpm_node *a = &w->node[pair->a], *b = &w->node[pair->b];
         double loss = 0;
         for (d = 0; d < 3; d++)
-            loss -= (double)(pair->impulse[d] * (mpm__mean_velocity(a, d, dt) - mpm__mean_velocity(b, d, dt)));
+            loss -= (double)(pair->impulse[d] * (mpm__mean_velocity(w, a, d) - mpm__mean_velocity(w, b, d)));
         if (pair->held) w->ledger.hold += loss;
         else w->ledger.contact += loss;
     }
@@ -1957,7 +2213,7 @@ static inline void mpm__account(mpm_world *w)
         const mpm_node *n = &w->node[i];
         for (d = 0; d < 3; d++)
             if (n->reaction[d] < 0 || n->reaction[d] > 0)
-                w->ledger.walls -= (double)(n->reaction[d] * mpm__mean_velocity(n, d, dt));
+                w->ledger.walls -= (double)(n->reaction[d] * mpm__mean_velocity(w, n, d));
     }
 }
 
@@ -1974,15 +2230,12 @@ MPM_API void mpm_musl(mpm_world *w)
     }
     mpm__account(w);
     mpm__account_gravity(w);
+    if (w->desc.scheme == MPM_SCHEME_CONSISTENT) mpm__settle(w, MPM__MAPPED);
     for (i = 0; i < w->nodes; i++) {
         mpm_node *n = &w->node[i];
-        int s;
         if (!n->flags) continue;
         mpm__constrain(w, n, n->velocity, NULL);
-        for (s = 0; s < 6; s++)
-            if ((n->flags >> s & 1) && w->desc.side[s] == MPM_SIDE_WALL &&
-                ((s & 1) ? n->velocity[s / 2] > 0 : n->velocity[s / 2] < 0))
-                n->velocity[s / 2] = 0;
+        mpm__walls_mapped(w, n);
     }
 }
 
@@ -2083,6 +2336,61 @@ MPM__KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, int32_t run,
     return MPM_OK;
 }
 
+/* Adds the internal forces of the new stress to those of the old one, at the nodes of a run that have a record. */
+static inline void mpm__inner_again(mpm_world *w, const mpm_run *r)
+{
+    const mpm_points *q = &w->points;
+    mpm_support s;
+    int32_t i;
+    int a;
+    for (i = r->first; i < r->first + r->count; i++) {
+        const mpm_real V = -q->mass[i] / q->density[i];
+        const mpm_real pull = w->desc.geometry == MPM_AXISYMMETRIC ? q->stress[1][i] / q->x[0][i] : 0;
+        mpm_support_of(w, r, i, &s);
+        for (a = 0; a < s.count; a++) {
+            const int32_t touch = w->node[s.slot[a]].touch;
+            const mpm_real x = s.G[0][a], y = s.G[1][a], z = s.G[2][a];
+            mpm_real f[3];
+            int d;
+            if (touch < 0) continue;
+            f[0] = q->stress[0][i] * x + q->stress[5][i] * y + q->stress[4][i] * z + pull * s.N[a];
+            f[1] = q->stress[5][i] * x + q->stress[1][i] * y + q->stress[3][i] * z;
+            f[2] = q->stress[4][i] * x + q->stress[3][i] * y + q->stress[2][i] * z;
+            for (d = 0; d < 3; d++) w->touch[touch].inner[d] += V * mpm__image(&s, a, d) * f[d];
+        }
+    }
+}
+
+/* 1 if a node of the run was cut: the velocity that its points were strained by is not what MUSL mapped back. */
+static inline int mpm__run_is_cut(const mpm_world *w, const mpm_run *r)
+{
+    const int32_t *slot = mpm__run_nodes(w, r);
+    int a;
+    for (a = 0; a < w->support[0] * w->support[1] * w->support[2]; a++)
+        if (w->node[slot[a]].touch >= 0) return 1;
+    return 0;
+}
+
+/* Stress works through the cut velocities, forces on the points through those that were mapped: what the cuts
+   kept from the stress, cut . (f_k + f_k+1) dt / 2, went to contact, holds and walls. */
+static inline void mpm__account_cuts(mpm_world *w)
+{
+    int32_t i;
+    int d;
+    if (w->touches == 0 || (w->desc.scheme == MPM_SCHEME_THESIS && w->walls_possible == 0)) return;
+    for (i = 0; i < w->runs; i++)
+        if (mpm__run_is_cut(w, &w->run[i])) mpm__inner_again(w, &w->run[i]);
+    for (i = 0; i < w->nodes; i++) {
+        const mpm_touch *t = w->node[i].touch < 0 ? NULL : &w->touch[w->node[i].touch];
+        double work = 0;
+        if (!t) continue;
+        for (d = 0; d < 3; d++) work += (double)(t->cut[d] * t->inner[d] * w->dt / 2);
+        if (!(w->node[i].flags & MPM_NODE_CONTACT)) w->ledger.walls += work;
+        else if (w->pair[t->pair].held) w->ledger.hold += work;
+        else w->ledger.contact += work;
+    }
+}
+
 MPM_API mpm_status mpm_stress(mpm_world *w)
 {
     const int hoop = w->desc.geometry == MPM_AXISYMMETRIC, flat = mpm__flat(&w->desc);
@@ -2098,6 +2406,7 @@ MPM_API mpm_status mpm_stress(mpm_world *w)
         else s = mpm__stress_body(w, b, from, to, 3, 1, 1);
         if (s < 0) return s;
     }
+    mpm__account_cuts(w);
     return MPM_OK;
 }
 
@@ -2135,7 +2444,7 @@ static inline void mpm__grid_reset(mpm_world *w)
 {
     int32_t s;
     for (s = 0; s < w->nodes; s++) w->head[w->node[s].index] = -1;
-    w->nodes = w->runs = w->pairs = w->pairs_possible = w->touches = 0;
+    w->nodes = w->runs = w->pairs = w->pairs_possible = w->touches = w->walls_possible = 0;
 }
 
 /* Puts point j's fields where point i's are, and the reverse. */
@@ -2275,6 +2584,7 @@ static inline int32_t mpm__slot(mpm_world *w, int32_t body, const int32_t *at)
     node->body = body;
     node->flags = sides;
     node->touch = -1;
+    w->walls_possible += mpm__at_wall(w, node);
     node->next = w->head[index];
     w->head[index] = s;
     return s;
@@ -2334,7 +2644,8 @@ static inline mpm_status mpm__list_runs(mpm_world *w)
             w->runs++;
         }
     }
-    return w->pairs_possible <= w->pair_capacity ? MPM_OK : MPM_ERR_FULL;
+    if (w->pairs_possible > w->pair_capacity) return MPM_ERR_FULL;
+    return w->walls_possible + 2 * w->pairs_possible > w->touch_capacity ? MPM_ERR_FULL : MPM_OK;
 }
 
 /* Sorts the points again once their order has cost a quarter more runs. */
@@ -2551,11 +2862,12 @@ static inline size_t mpm__layout_work(mpm_world *w, char *base, int32_t nodes)
     size_t reach = (size_t)w->support[0] * (size_t)w->support[1] * (size_t)w->support[2];
     w->node_capacity = w->run_capacity = nodes;
     w->pair_capacity = pairs;
+    w->touch_capacity = 2 * pairs;
     w->node = (mpm_node *)mpm_carve(base, &used, n, sizeof(mpm_node));
     w->run = (mpm_run *)mpm_carve(base, &used, n, sizeof(mpm_run));
     w->slot = (int32_t *)mpm_carve(base, &used, mpm_size_mul(n, reach), sizeof(int32_t));
     w->pair = (mpm_pair *)mpm_carve(base, &used, (size_t)pairs, sizeof(mpm_pair));
-    w->touch = (mpm_touch *)mpm_carve(base, &used, 2 * (size_t)pairs, sizeof(mpm_touch));
+    w->touch = (mpm_touch *)mpm_carve(base, &used, (size_t)w->touch_capacity, sizeof(mpm_touch));
     w->plane = (mpm_plane *)mpm_carve(base, &used, w->planes ? (size_t)pairs : 0, sizeof(mpm_plane));
     if (!w->planes) w->plane = NULL;
     return used;
@@ -2710,7 +3022,7 @@ static inline mpm_status mpm__enlarge(mpm_world *w, const mpm_world *before)
     w->memory_bytes = bytes;
     mpm__clear_points(w);
     mpm__copy_points(w, before);
-    w->nodes = w->runs = w->pairs = w->pairs_possible = w->touches = 0;
+    w->nodes = w->runs = w->pairs = w->pairs_possible = w->touches = w->walls_possible = 0;
     MPM_FREE(before->memory);
     return MPM_OK;
 }
@@ -3498,6 +3810,7 @@ MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *f)
     if (s == MPM_OK)
         s = mpm_want((int)d->geometry >= 0 && d->geometry < MPM_GEOMETRIES, f, "geometry", (mpm_real)d->geometry, -1);
     if (s == MPM_OK) s = mpm_want((int)d->basis >= 0 && d->basis < MPM_BASES, f, "basis", (mpm_real)d->basis, -1);
+    if (s == MPM_OK) s = mpm_want((int)d->scheme >= 0 && d->scheme < MPM_SCHEMES, f, "scheme", (mpm_real)d->scheme, -1);
     if (s == MPM_OK) s = mpm__desc_grid(d, f);
     if (s == MPM_OK) s = mpm__desc_capacities(d, f);
     if (s == MPM_OK) s = mpm_contact_check(&d->contact, f);

@@ -320,7 +320,7 @@ static inline int mpm__bond_nearest(const mpm_world *w, const mpm_support *s)
 {
     int a, nearest = -1;
     for (a = 0; a < s->count; a++)
-        if (w->node[s->slot[a]].touch >= 0 && s->N[a] > 0 && (nearest < 0 || s->N[a] > s->N[nearest])) nearest = a;
+        if ((w->node[s->slot[a]].flags & MPM_NODE_CONTACT) && s->N[a] > 0 && (nearest < 0 || s->N[a] > s->N[nearest])) nearest = a;
     return nearest;
 }
 
@@ -361,8 +361,9 @@ static inline void mpm__bond_spread(const mpm_bond *b, mpm_world *w, const mpm_r
     int a;
     mpm_support_of(w, r, i, &s);
     for (a = 0; a < s.count; a++) {
-        const int32_t touch = w->node[s.slot[a]].touch;
-        if (touch < 0 || !(s.N[a] > 0)) continue;
+        const mpm_node *n = &w->node[s.slot[a]];
+        const int32_t touch = n->touch;
+        if (!(n->flags & MPM_NODE_CONTACT) || !(s.N[a] > 0)) continue;
         w->touch[touch].work[0] += b->average == MPM_BOND_MEAN ? D : D * s.N[a];
         w->touch[touch].work[1] += b->average == MPM_BOND_WEIGHTED ? s.N[a] : 1;
     }

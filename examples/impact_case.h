@@ -34,7 +34,7 @@ typedef struct impact_case {
     double gap, offset;                            /* um: start distance; shift of the grid */
     double margin;                                 /* free grid around the bodies, particle diameters */
     const char *shape, *material, *substrate_material, *model; /* "": substrate as particle */
-    const char *bond, *bond_average, *symmetry, *geometry, *functions, *plasticity, *normal;
+    const char *bond, *bond_average, *symmetry, *geometry, *functions, *plasticity, *normal, *scheme;
 } impact_case;
 
 static inline impact_case impact_case_default(void)
@@ -69,6 +69,7 @@ static inline impact_case impact_case_default(void)
     c.functions = "linear";
     c.plasticity = "consistent";
     c.normal = "ranked";
+    c.scheme = "thesis";
     return c;
 }
 
@@ -161,6 +162,7 @@ static inline int impact_check(const impact_case *c, char *m, size_t n)
            case_knows(IMPACT_GEOMETRIES, "geometry", c->geometry, m, n) &&
            case_knows(MPM_NAMES(MPM_BASIS_LIST), "functions", c->functions, m, n) &&
            case_knows(MPM_NAMES(MPM_NORMAL_LIST), "normal", c->normal, m, n) &&
+           case_knows(MPM_NAMES(MPM_SCHEME_LIST), "scheme", c->scheme, m, n) &&
            case_knows(MPM_NAMES(MPM_RETURN_LIST), "plasticity", c->plasticity, m, n) && impact_fits(c, m, n) &&
            impact_agrees(c, m, n);
 }
@@ -193,6 +195,7 @@ static inline mpm_desc impact_grid(const impact_case *c)
     d.contact.friction = (mpm_real)c->friction;
     d.contact.touch = c->separation;
     d.contact.normal = (mpm_normal_rule)word_place(MPM_NAMES(MPM_NORMAL_LIST), c->normal);
+    d.scheme = (mpm_scheme)word_place(MPM_NAMES(MPM_SCHEME_LIST), c->scheme);
     return d;
 }
 

@@ -27,8 +27,8 @@ static void gravity(void)
 }
 
 /* An elastic column between sliding walls, thrown at the lower side. On a rigid wall it lets go after
-   2 L / c with its velocity reversed; nodal impact takes a share that falls with the cell (12, 7, 4,
-   2.6, 1.6 % of the velocity for 8, 16, 32, 64, 128 cells). Returns its mean velocity afterwards over
+   2 L / c with its velocity reversed; that the lowest nodes stop at once takes a share that falls with the cell (13.5,
+   8.2, 4.7, 2.9 % of the velocity for 8, 16, 32, 64 cells). Returns its mean velocity afterwards over
    before. */
 static double throw_at(mpm_side side, double cell, double *momentum, double *energy)
 {
@@ -57,7 +57,7 @@ static double throw_at(mpm_side side, double cell, double *momentum, double *ene
 static void sides(void)
 {
     double p, e, r = throw_at(MPM_SIDE_WALL, 1, &p, &e), fine;
-    CHECK_NEAR("wall: an elastic column of 16 cells bounces off with its velocity", r, -1, 0.08);
+    CHECK_NEAR("wall: an elastic column of 16 cells bounces off with its velocity", r, -1, 0.09);
     CHECK_NEAR("wall: momentum", p, 0, 5e3 * eps);
     CHECK_NEAR("wall: energy with the wall's loss counted", e, 0, 0.01);
     fine = throw_at(MPM_SIDE_WALL, 0.5, &p, &e);

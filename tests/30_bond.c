@@ -148,6 +148,7 @@ static mpm_world cube_on_slab(mpm_material *m, int fields)
     mpm_body_desc slab = scene_body(m, mpm_box(-5, -5, -4, 5, 5, 0), 0.5, 0);
     mpm_world w;
     d.user_fields = fields;
+    d.scheme = MPM_SCHEME_THESIS;
     mpm_init(&w, &d, NULL, 0);
     mpm_body_add(&w, &cube);
     mpm_body_add(&w, &slab);

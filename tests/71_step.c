@@ -114,6 +114,7 @@ static int scene(mpm_world *w, mpm_desc *d, const hooke *h)
     mpm_body_desc ball = elastic(h, mpm_sphere(c, c, MPM_R(5.2), 2), 0.5, -200);
     mpm_body_desc block = elastic(h, mpm_box(low, low, MPM_R(0.1), high, high, MPM_R(3.1)), 0.5, 0);
     ball.velocity[0] = c > 0 ? 50 : 0; /* so that it rubs */
+    d->scheme = MPM_SCHEME_THESIS;
     return mpm_init(w, d, NULL, 0) == MPM_OK && mpm_body_add(w, &ball) == MPM_OK && mpm_body_add(w, &block) == MPM_OK;
 }
 

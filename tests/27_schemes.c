@@ -1,0 +1,220 @@
+/* 27_schemes - contact and walls in the consistent scheme: no rebound faster than the impact, energy accounted for,
+   nothing depends on how bodies are numbered, welds are one body, and bonds hold in both directions.
+   SPDX-License-Identifier: MIT */
+#define MPM_IMPLEMENTATION
+#include "scene.h"
+#include "check.h"
+
+static const double eps = (double)MPM_EPSILON;
+
+/* ---- rebound ------------------------------------------------------------------------------- */
+
+typedef struct rebound {
+    double ratio, energy; /* speed after over before; what the ledger misses, over the kinetic energy before */
+} rebound;
+
+enum { WALL, MIRROR, BAR };
+
+/* An elastic bar of 10 cells, or a disk as wide, thrown at a wall, at its own mirror image, or at an equal bar. */
+static rebound thrown(int at, int round, mpm_basis basis, double speed, double factor)
+{
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(1, round ? 7 : 2, 1, 40, 0, 0, at == BAR ? -20 : 0);
+    const mpm_real wide = round ? 5 : 2;
+    mpm_body_desc b = scene_body(&m, mpm_box(0, 0, 1, wide, 1, 11), 0.5, -speed);
+    mpm_totals before, t;
+    rebound r;
+    mpm_world w;
+    mpm_real dt;
+    d.geometry = MPM_PLANE_STRAIN;
+    d.basis = basis;
+    d.side[0] = MPM_SIDE_SYMMETRY;
+    if (!round) d.side[1] = MPM_SIDE_SYMMETRY;
+    d.side[4] = at == WALL ? MPM_SIDE_WALL : at == MIRROR ? MPM_SIDE_SYMMETRY : MPM_SIDE_OPEN;
+    if (round) b.shape = mpm_ellipsoid(0, 0, 6, 5, 5, 5);
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &b);
+    if (at == BAR) {
+        b.shape.center[2] = -b.shape.center[2];
+        b.velocity[2] = (mpm_real)speed;
+        mpm_body_add(&w, &b);
+    }
+    before = mpm_body_totals(&w, 0);
+    dt = mpm_time_step(&w, (mpm_real)factor);
+    while ((double)w.time < 1.6 / speed + 40 / (double)b.wave_p)
+        if (mpm_step(&w, dt) < 0) break;
+    t = mpm_body_totals(&w, 0);
+    r.ratio = -t.momentum[2] / before.momentum[2];
+    r.energy = mpm_body_totals(&w, -1).kinetic + mpm_body_totals(&w, -1).internal + w.ledger.walls + w.ledger.contact;
+    r.energy = r.energy / (before.kinetic * (at == BAR ? 2 : 1)) - 1;
+    mpm_free(&w);
+    return r;
+}
+
+/* Walls and bars beside a mirror, whose only error is that of the stress work. */
+static void rebounds(mpm_basis basis, double speed, double factor)
+{
+    static const char *const name[] = {"wall", "mirror", "bar"};
+    const rebound mirror = thrown(MIRROR, 0, basis, speed, factor);
+    int at;
+    for (at = WALL; at <= BAR; at += BAR - WALL) {
+        const rebound r = thrown(at, 0, basis, speed, factor);
+        char line[120];
+        snprintf(line, sizeof line, "%s on a %s, %g m/s, dt %g", basis ? "GIMP" : "linear", name[at], speed, factor);
+        printf("# %s: %.4f of the speed back (mirror %.4f), energy missed %.4f (%.4f)\n", line, r.ratio, mirror.ratio,
+               r.energy, mirror.energy);
+        CHECK_TRUE(line, r.ratio <= 1 && r.ratio > 0.9 * mirror.ratio);
+        CHECK_NEAR("... energy", r.energy, 0, 0.005 + fabs(mirror.energy));
+    }
+}
+
+static void disks(mpm_basis basis)
+{
+    int at;
+    for (at = WALL; at <= BAR; at += BAR - WALL) {
+        const rebound r = thrown(at, 1, basis, 100, 0.3);
+        printf("# disk on a %s: %.4f of the speed back, energy missed %.4f\n", at == WALL ? "wall" : "disk", r.ratio,
+               r.energy);
+        CHECK_TRUE("a disk is not faster after than before", r.ratio <= 1 && r.ratio > 0.8);
+        CHECK_NEAR("... energy", r.energy, 0, 0.005);
+    }
+}
+
+/* ---- three bodies at a node ------------------------------------------------------------------ */
+
+/* Two blocks close on a foil one cell thick between them, added in one of three orders. v[0]: lower, foil, upper. */
+static void foil(mpm_contact_law law, mpm_basis basis, int order, double *v)
+{
+    mpm_material m = scene_metal(0, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(1, 20, 1, 20, -10, 0, -10);
+    int which[3], k, n;
+    mpm_world w;
+    d.geometry = MPM_PLANE_STRAIN;
+    d.basis = basis;
+    d.contact.law = law;
+    d.contact.friction = MPM_R(0.3);
+    d.contact.normal = MPM_NORMAL_AVERAGE;
+    mpm_init(&w, &d, NULL, 0);
+    for (k = 0; k < 3; k++) {
+        const mpm_real low = which[k] = (k + order) % 3, half = MPM_R(0.5);
+        const mpm_real z = low < 1 ? MPM_R(-5.5) : low < 2 ? -half : half;
+        mpm_body_desc b = scene_body(&m, mpm_box(-6, 0, z, 6, 1, low < 1 ? -half : low < 2 ? half : MPM_R(5.5)), 0.5, 0);
+        b.velocity[2] = low < 1 ? 100 : low < 2 ? 0 : -100;
+        mpm_body_add(&w, &b);
+    }
+    for (n = 0; n < 600; n++)
+        if (mpm_step(&w, MPM_R(1e-5)) < 0) break;
+    for (k = 0; k < 3; k++) {
+        const mpm_totals t = mpm_body_totals(&w, k);
+        v[which[k]] = n == 600 ? t.momentum[2] / t.mass : 1e9;
+    }
+    mpm_free(&w);
+}
+
+static void three_bodies(void)
+{
+    double v[3][3];
+    int law, basis, order, k;
+    for (basis = MPM_LINEAR; basis <= MPM_GIMP; basis++)
+        for (law = MPM_CONTACT_FRICTION; law <= MPM_CONTACT_WELD; law++) {
+            double apart = 0;
+            for (order = 0; order < 3; order++) foil((mpm_contact_law)law, (mpm_basis)basis, order, v[order]);
+            for (order = 1; order < 3; order++)
+                for (k = 0; k < 3; k++) apart = check_worst(apart, fabs(v[order][k] - v[0][k]) / 100);
+            printf("# law %d, %s: blocks at %.3f and %.3f m/s, foil %.2g\n", law, basis ? "GIMP" : "linear", v[0][0],
+                   v[0][2], v[0][1]);
+            CHECK_NEAR("three bodies at a node: whatever their numbers", apart, 0, 1e7 * eps);
+            CHECK_NEAR("... the foil stays in the middle", v[0][1] / 100, 0, 1e6 * eps);
+            CHECK_NEAR("... and the blocks are mirror images", (v[0][0] + v[0][2]) / 100, 0, 1e6 * eps);
+        }
+}
+
+/* Six cubes around an edge and their neighbours, welded, each at its own velocity: one velocity at every node. */
+static void six_welded(void)
+{
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(1, 12, 12, 12, -6, -6, -6);
+    double apart = 0, momentum[3] = {0, 0, 0};
+    mpm_totals t;
+    mpm_world w;
+    int32_t i;
+    int k, c;
+    d.contact.law = MPM_CONTACT_WELD;
+    mpm_init(&w, &d, NULL, 0);
+    for (k = 0; k < 6; k++) {
+        const mpm_real x = (mpm_real)(k % 2 ? 0 : -2), y = (mpm_real)(k / 2 % 2 ? 0 : -2), z = (mpm_real)(k / 4 ? 0 : -2);
+        mpm_body_desc b = scene_body(&m, mpm_box(x, y, z, x + 2, y + 2, z + 2), 0.5, 37 * k - 50);
+        b.velocity[0] = (mpm_real)(20 * k);
+        mpm_body_add(&w, &b);
+    }
+    t = mpm_body_totals(&w, -1);
+    for (c = 0; c < 3; c++) momentum[c] = t.momentum[c];
+    mpm_locate(&w, MPM_R(1e-5));
+    mpm_p2g(&w);
+    mpm_forces(&w);
+    mpm_grid_update(&w);
+    mpm_contact_find(&w);
+    mpm_contact_apply(&w);
+    for (i = 0; i < w.pairs; i++)
+        for (c = 0; c < 3; c++) {
+            const mpm_node *a = &w.node[w.pair[i].a], *b = &w.node[w.pair[i].b];
+            apart = check_worst(apart, fabs((double)(a->momentum[c] / a->mass - b->momentum[c] / b->mass)) / 100);
+        }
+    CHECK_TRUE("six bodies meet", w.pairs > 15 * 3);
+    CHECK_NEAR("welded, they have one velocity at every node", apart, 0, 1e3 * eps);
+    mpm_g2p(&w);
+    mpm_musl(&w);
+    t = mpm_body_totals(&w, -1);
+    for (c = 0; c < 3; c++)
+        CHECK_NEAR("... and their momentum", (t.momentum[c] - momentum[c]) / fabs(t.momentum[0]), 0, 1e3 * eps);
+    mpm_free(&w);
+}
+
+/* ---- bonded ---------------------------------------------------------------------------------- */
+
+/* Two elastic spheres bonded all over, one of them given a push: they vibrate for a microsecond. */
+static void bonded_spheres(void)
+{
+    const mpm_units u = mpm_units_um_us_ng();
+    mpm_material m = scene_metal(1, u);
+    mpm_bond bond = mpm_bond_default(&u);
+    mpm_desc d = scene_grid(1, 12, 12, 22, -6, -6, -11);
+    mpm_body_desc upper = scene_body(&m, mpm_sphere(0, 0, MPM_R(3.9), 4), 0.5, -5);
+    mpm_body_desc lower = scene_body(&m, mpm_sphere(0, 0, MPM_R(-4.1), 4), 0.5, 5);
+    double start, worst = 0;
+    mpm_world w;
+    mpm_real dt;
+    int32_t i;
+    bond.rule = MPM_BOND_NONE;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &upper);
+    mpm_body_add(&w, &lower);
+    for (i = 0; i < w.points.count; i++) w.points.bond[i] = 2;
+    start = mpm_body_totals(&w, -1).kinetic;
+    dt = mpm_time_step(&w, MPM_R(0.4));
+    while (w.time < 1) {
+        mpm_totals t;
+        if (mpm_bond_step(&bond, &w, dt) < 0) break;
+        t = mpm_body_totals(&w, -1);
+        worst = check_worst(worst, fabs((t.kinetic + t.internal) / start - 1));
+    }
+    CHECK_TRUE("bonded spheres: held to the end", w.time >= 1 && w.held > 0);
+    CHECK_NEAR("bonded spheres: energy over a microsecond", worst, 0, 0.01);
+    mpm_free(&w);
+}
+
+int main(void)
+{
+    int b;
+    for (b = MPM_LINEAR; b <= MPM_GIMP; b++) {
+        rebounds((mpm_basis)b, 10, 0.1);
+        rebounds((mpm_basis)b, 50, 0.1);
+        rebounds((mpm_basis)b, 50, 0.5);
+        rebounds((mpm_basis)b, 1000, 0.5);
+        disks((mpm_basis)b);
+    }
+    three_bodies();
+    six_welded();
+    bonded_spheres();
+    return check_end();
+}

@@ -72,7 +72,7 @@ int main(void)
     printf("waves run at %.1f m/s: the bar swings at %.2f Hz\n", c, exact);
     for (cells = 10; cells <= 40; cells *= 2) {
         const double f = frequency(&al, length, cells);
-        printf("%2d cells: %.2f Hz, error %.4f %%\n", cells, f, 100 * (f / exact - 1));
+        printf("%2d cells: error %.4f %%, %.2f Hz\n", cells, 100 * (f / exact - 1), f);
     }
     return 0;
 }

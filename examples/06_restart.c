@@ -100,7 +100,7 @@ int main(int argc, char **argv)
            mpm_bond_measure_body(&second, -1).pbcp);
     printf("the ledgers are %s\n",
            memcmp(&whole.ledger, &second.ledger, sizeof whole.ledger) ? "different" : "the same");
-    printf("%ld of %ld numbers differ\n", differing(&whole, &second), (long)whole.points.count * whole.fields);
+    printf("numbers that differ: %ld of %ld\n", differing(&whole, &second), (long)whole.points.count * whole.fields);
     mpm_free(&whole);
     mpm_free(&second);
     remove(path);

@@ -71,7 +71,7 @@ static int failed(const mpm_world *w)
 static void weigh(const mpm_world *w, int body, const char *name, double exact)
 {
     const mpm_totals t = mpm_body_totals(w, body);
-    printf("%s: %ld points, %.5f kg, %.4f %% of the exact mass\n", name, t.points, t.mass, 100 * t.mass / exact);
+    printf("%s: %.4f %% of the exact mass, %.5f kg in %ld points\n", name, 100 * t.mass / exact, t.mass, t.points);
 }
 
 int main(int argc, char **argv)

@@ -142,7 +142,7 @@ int main(void)
         if (!step(&w, pull, &up, &down)) return 1;
     t = mpm_body_totals(&w, 0);
     printf("momentum %.6f ng m/s, traction x area x time %.6f ng m/s\n", t.momentum[2], pull * area * (double)w.time);
-    printf("work of the traction %.4f pJ, energy of the block %.4f pJ\n", -w.ledger.walls, t.kinetic + t.internal);
+    printf("work of the traction %.4f pJ, energy of the free block %.4f pJ\n", -w.ledger.walls, t.kinetic + t.internal);
     mpm_free(&w);
     return 0;
 }

@@ -167,13 +167,6 @@ typedef double mpm_real;
 extern "C" {
 #endif
 
-/* ---- lists ---------------------------------------------------------------------------------- */
-
-/* Choices stand in lists of X(enum, "name", "text"), from which the enum, the names and the texts are made.
-   MPM_NAMES(list): its names in one text, "elastic|linear|jc". */
-#define MPM__NAME_BAR(name, word, text) "|" word
-#define MPM_NAMES(LIST) (&("" LIST(MPM__NAME_BAR))[1])
-
 /* ---- status and faults --------------------------------------------------------------------- */
 
 /* Every status, its number and its meaning. 0: done. Negative: failed, the state is as it was
@@ -212,8 +205,6 @@ typedef struct mpm_fault {
 /* ---- tools --------------------------------------------------------------------------------- */
 
 /* What the headers share, for your own laws too: static inline, free to use. */
-
-#define MPM_MARK 0x6d706d32u /* what a _default function leaves in `mark`: a zeroed description is told by it */
 
 #define MPM_PI MPM_R(3.14159265358979323846)
 #define MPM_ALIGN 64 /* bytes: of what mpm_carve hands out */

@@ -167,13 +167,6 @@ typedef double mpm_real;
 extern "C" {
 #endif
 
-/* ---- lists ---------------------------------------------------------------------------------- */
-
-/* Choices stand in lists of X(enum, "name", "text"), from which the enum, the names and the texts are made.
-   MPM_NAMES(list): its names in one text, "elastic|linear|jc". */
-#define MPM__NAME_BAR(name, word, text) "|" word
-#define MPM_NAMES(LIST) (&("" LIST(MPM__NAME_BAR))[1])
-
 /* ---- status and faults --------------------------------------------------------------------- */
 
 /* Every status, its number and its meaning. 0: done. Negative: failed, the state is as it was
@@ -217,7 +210,6 @@ typedef struct mpm_fault {
 
 #define MPM_PI MPM_R(3.14159265358979323846)
 #define MPM_ALIGN 64 /* bytes: of what mpm_carve hands out */
-#define MPM_MARK 0x6d706d32u /* stands in every description that a _default() made: a zeroed one is refused by name */
 
 /* mpm_sqrt(x), mpm_exp(x), ...: libm in mpm_real. */
 #define MPM_MATH_LIST(X) X(sqrt) X(cbrt) X(exp) X(expm1) X(log) X(erf) X(tanh) X(fabs)

@@ -208,7 +208,6 @@ typedef struct mpm_fault {
 
 #define MPM_PI MPM_R(3.14159265358979323846)
 #define MPM_ALIGN 64 /* bytes: of what mpm_carve hands out */
-#define MPM_MARK 0x6d706d32u /* stands in every description that a _default() made: a zeroed one is refused by name */
 
 /* mpm_sqrt(x), mpm_exp(x), ...: libm in mpm_real. */
 #define MPM_MATH_LIST(X) X(sqrt) X(cbrt) X(exp) X(expm1) X(log) X(erf) X(tanh) X(fabs)

@@ -416,8 +416,7 @@ static inline mpm_status mpm__ptw_positive(const char *field, mpm_real value, mp
 /* A material of zeros would divide by them in silence: this names what was forgotten. */
 static inline mpm_status mpm__ptw_marked(const mpm_material *m, mpm_fault *fault)
 {
-    if (m->mark == MPM_MARK) return MPM_OK;
-    return mpm_fail(fault, MPM_ERR_ARGUMENT, "material (not from mpm_material_default)", 0, -1);
+    return mpm_want(m->mark == MPM_MARK, fault, "material (not from mpm_material_default)", (mpm_real)m->mark, -1);
 }
 
 /* Returns from the calling check at its first fault. */

@@ -83,6 +83,17 @@ static int write_curve(const char *path, const mpm_material *m, const mpm_materi
 
 static void print(const char *key, double value) { printf("%s = %.17g\n", key, value); }
 
+/* The properties at one state. */
+static void print_all(const mpm_material *m, const mpm_material_state *s, double hugoniot)
+{
+    print("flow_stress_MPa", 1e-6 * (double)mpm_material_flow_stress(m, s));
+    print("shear_modulus_MPa", 1e-6 * (double)mpm_material_shear_modulus(m, s));
+    print("melt_temperature_K", (double)mpm_material_melt_temperature(m, s->density));
+    if (m->strength == MPM_STRENGTH_PTW) print("xidot_per_s", (double)mpm_material_attempt_rate(m, s));
+    print("pressure_MPa", 1e-6 * (double)s->pressure);
+    print("hugoniot_pressure_MPa", 1e-6 * hugoniot);
+}
+
 int main(int argc, char **argv)
 {
     const char *name = "al", *model = "", *curve = "";
@@ -128,12 +139,6 @@ int main(int argc, char **argv)
     s.pressure = pressure;
     if (*curve && m.strength == MPM_STRENGTH_ELASTIC) return refuse("a curve needs a strength, not the model", model);
     if (*curve && write_curve(curve, &m, &s)) return 1;
-    print("flow_stress_MPa", 1e-6 * (double)mpm_material_flow_stress(&m, &s));
-    print("shear_modulus_MPa", 1e-6 * (double)mpm_material_shear_modulus(&m, &s));
-    print("melt_temperature_K", (double)mpm_material_melt_temperature(&m, s.density));
-    if (m.strength == MPM_STRENGTH_PTW)
-        print("xidot_per_s", (double)mpm_material_attempt_rate(&m, &s));
-    print("pressure_MPa", 1e-6 * (double)pressure);
-    print("hugoniot_pressure_MPa", 1e-6 * (double)hugoniot);
+    print_all(&m, &s, (double)hugoniot);
     return 0;
 }

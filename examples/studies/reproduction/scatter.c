@@ -88,7 +88,7 @@ static int positions(work *w, int where_points_touch)
     plan(w, 1, 2 * POSITIONS + POSITIONS * critical_cost(&range));
     status = critical_repeat(w, c, VARY_GRID, "thesis", range, POSITIONS, &out);
     if (status <= 0) return status;
-    w->s.early = 0;
+    w->s.whole = 1;
     say(w, "%s\n\n| grid plane over the interface, um | rebound without bond, m/s | mean D | PBCP, %% | rebound, m/s | "
            "critical velocity, m/s | after %g ns: gap, um | mean D of the particle |\n"
            "|---|---|---|---|---|---|---|---|\n", where_points_touch

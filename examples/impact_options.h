@@ -48,7 +48,7 @@ static inline int impact_options(impact_case *c, option *o)
     option_add_word(o, &n, "functions", &c->functions, MPM_NAMES(MPM_BASIS_LIST), "shape functions");
     option_add(o, &n, "friction", OPTION_REAL, &c->friction, "Coulomb coefficient between the bodies");
     option_add_word(o, &n, "normal", &c->normal, MPM_NAMES(MPM_NORMAL_LIST), "contact normal");
-    option_add(o, &n, "separation", OPTION_FLAG, &c->separation,
+    option_add(o, &n, "touch", OPTION_FLAG, &c->touch,
                "contact where the points themselves touch, not where they share a node");
     option_add_word(o, &n, "plasticity", &c->plasticity, MPM_NAMES(MPM_RETURN_LIST), "return mapping");
     option_add(o, &n, "gap", OPTION_REAL, &c->gap, "distance of the bodies at the start, um");

@@ -30,7 +30,7 @@ typedef struct impact_case {
     double eps_c, epsdot_c;                        /* strain bond: 1, 1/us */
     double shell;                                  /* thickness of the surface that contacts and bonds, spacings */
     double friction;
-    int separation;                                /* 1: bodies touch where their points do */
+    int touch;                                     /* 1: bodies touch where their points do */
     double gap, offset;                            /* um: start distance; shift of the grid */
     double margin;                                 /* free grid around the bodies, particle diameters */
     const char *shape, *material, *substrate_material, *model; /* "": substrate as particle */
@@ -193,7 +193,7 @@ static inline mpm_desc impact_grid(const impact_case *c)
     d.cells[2] = above + below;
     d.origin[2] = (mpm_real)(shift - below * c->cell);
     d.contact.friction = (mpm_real)c->friction;
-    d.contact.touch = c->separation;
+    d.contact.touch = c->touch;
     d.contact.normal = (mpm_normal_rule)word_place(MPM_NAMES(MPM_NORMAL_LIST), c->normal);
     d.scheme = (mpm_scheme)word_place(MPM_NAMES(MPM_SCHEME_LIST), c->scheme);
     return d;

@@ -49,7 +49,7 @@ static inline int impact_options(impact_case *c, option *o)
     option_add(o, &n, "friction", OPTION_REAL, &c->friction, "Coulomb coefficient between the bodies");
     option_add_word(o, &n, "normal", &c->normal, MPM_NAMES(MPM_NORMAL_LIST), "contact normal");
     option_add_word(o, &n, "scheme", &c->scheme, MPM_NAMES(MPM_SCHEME_LIST), "when contact acts in a step");
-    option_add(o, &n, "separation", OPTION_FLAG, &c->separation,
+    option_add(o, &n, "touch", OPTION_FLAG, &c->touch,
                "contact where the points themselves touch, not where they share a node");
     option_add_word(o, &n, "plasticity", &c->plasticity, MPM_NAMES(MPM_RETURN_LIST), "return mapping");
     option_add(o, &n, "gap", OPTION_REAL, &c->gap, "distance of the bodies at the start, um");

@@ -73,7 +73,7 @@ static int same(const char *a, const char *b, const char *name)
 }
 
 /* Stopped, left for dead behind its second frame, gone on with from the first stop, beside one run. */
-static void interrupted(const char *normal, int separation)
+static void interrupted(const char *normal, int touch)
 {
     static const char *const file[] = {"particles.csv", "pairs.csv", "summary.json", "particles.pvd",
                                        "points_0000.vtu", "points_0001.vtu", "points_0002.vtu", "frame_0002.png"};
@@ -82,7 +82,7 @@ static void interrupted(const char *normal, int separation)
     scene(&whole, FOLDER "/whole");
     scene(&parts, FOLDER "/parts");
     whole.base.normal = parts.base.normal = normal;
-    whole.base.separation = parts.base.separation = separation;
+    whole.base.touch = parts.base.touch = touch;
     CHECK_EQUAL(normal, run(&whole, 0), 0);
     CHECK_EQUAL("stopped after 100 steps", run(&parts, 100), 3);
     CHECK_TRUE("... with a checkpoint, without a summary",
@@ -90,7 +90,7 @@ static void interrupted(const char *normal, int separation)
     CHECK_TRUE("... which is not taken for a finished scene", !particles_finished(&parts));
     scene(&parts, FOLDER "/parts");
     parts.base.normal = normal;
-    parts.base.separation = separation;
+    parts.base.touch = touch;
     system("cp " FOLDER "/parts/checkpoint.bin " FOLDER "/first.bin");
     CHECK_EQUAL("stopped again, behind the second frame", run(&parts, 200), 3);
     CHECK_TRUE("... which is there", exists(FOLDER "/parts", "points_0001.vtu"));
@@ -199,7 +199,7 @@ static void finished(void)
     static particles_case q;
     scene(&q, FOLDER "/whole");
     q.base.normal = "logistic";
-    q.base.separation = 1;
+    q.base.touch = 1;
     CHECK_TRUE("a finished scene is known", particles_finished(&q));
     q.out.frames = 9;
     q.out.quiet = 0;
@@ -210,9 +210,9 @@ static void finished(void)
     q.base.normal = "log";
     CHECK_TRUE("... another word", !particles_finished(&q));
     q.base.normal = "logistic";
-    q.base.separation = 0;
+    q.base.touch = 0;
     CHECK_TRUE("... another switch", !particles_finished(&q));
-    q.base.separation = 1;
+    q.base.touch = 1;
     q.center[1][0] = 3.2;
     CHECK_TRUE("... another place", !particles_finished(&q));
     q.center[1][0] = 3.1;

@@ -120,7 +120,7 @@ static uint64_t bits_logistic(void)
     impact_case c = impact_case_default();
     c.functions = "gimp";
     c.normal = "logistic";
-    c.separation = 1;
+    c.touch = 1;
     c.friction = 0.2;
     c.spacing = 0.75;
     c.bond_width = 0.5;

@@ -15,6 +15,10 @@
 #define MPM_IMPLEMENTATION
 #include "calibration.h"
 
+static const char *const program = "examples/studies/calibrate.c";
+
+/* ---- what is written --------------------------------------------------------------------------- */
+
 static int list(const calibration *q, const study *s)
 {
     static calibration_map map;
@@ -37,9 +41,9 @@ static int write_tasks(const calibration *q, const study *s, mpm_fault *fault)
     mpm_io_csv t;
     int size;
     long k;
-    snprintf(path, sizeof path, "%s/tasks.csv", s->folder);
-    mpm_io_csv_begin(&t, path, "task,diameter_um,velocity_m_s,gc_J_m2,gdot_J_m2_us,pbcp_percent,restitution_ratio,"
-                               "v_late_m_s,bonds", "examples/studies/calibrate.c", fault);
+    mpm_io_csv_begin(&t, file_in(s->folder, "tasks.csv", path, sizeof path),
+                     "task,diameter_um,velocity_m_s,gc_J_m2,gdot_J_m2_us,pbcp_percent,restitution_ratio,v_late_m_s,"
+                     "bonds", program, fault);
     for (size = 0; size < 2; size++)
         for (k = 0; k < calibration_nodes(q); k++) {
             const impact_case c = calibration_case(q, size, k);
@@ -57,15 +61,36 @@ static int write_tasks(const calibration *q, const study *s, mpm_fault *fault)
     return mpm_io_csv_end(&t, fault) >= 0;
 }
 
+static void write_side(mpm_io_json *j, const calibration *q, int size, const calibration_side *side)
+{
+    double theta[6];
+    char name[40];
+    int k;
+    snprintf(name, sizeof name, "size_%d", size + 1);
+    mpm_io_json_open(j, name);
+    mpm_io_json_number(j, "diameter_um", q->diameter[size]);
+    mpm_io_json_number(j, "velocity_m_s", q->velocity[size]);
+    mpm_io_json_integer(j, "tests", side->tests);
+    mpm_io_json_integer(j, "bonded", side->bonded);
+    mpm_io_json_string(j, "fit", side->why);
+    if (side->status >= 0) {
+        mpm_logistic_theta(&side->fit, theta);
+        for (k = 0; k < 6; k++) {
+            snprintf(name, sizeof name, "theta_%d", k);
+            mpm_io_json_number(j, name, theta[k]);
+        }
+        mpm_io_json_integer(j, "tests_on_the_wrong_side", side->fit.wrong);
+    }
+    mpm_io_json_close(j);
+}
+
 static int write_summary(const calibration *q, const calibration_result *r, const study *s, const option *o, int n,
                          mpm_fault *fault)
 {
     char path[MPM_IO_PATH], name[40];
-    double theta[6];
     mpm_io_json j;
-    int size, k;
-    snprintf(path, sizeof path, "%s/summary.json", s->folder);
-    mpm_io_json_begin(&j, path, fault);
+    int k;
+    mpm_io_json_begin(&j, file_in(s->folder, "summary.json", path, sizeof path), fault);
     mpm_io_json_integer(&j, "crossings", r->points);
     mpm_io_json_bool(&j, "same_boundary", r->same);
     for (k = 0; k < r->points; k++) {
@@ -74,25 +99,7 @@ static int write_summary(const calibration *q, const calibration_result *r, cons
         snprintf(name, sizeof name, "crossing_%d_gdot_J_m2_us", k + 1);
         mpm_io_json_number(&j, name, r->point[k][1]);
     }
-    for (size = 0; size < 2; size++) {
-        const calibration_side *side = &r->side[size];
-        snprintf(name, sizeof name, "size_%d", size + 1);
-        mpm_io_json_open(&j, name);
-        mpm_io_json_number(&j, "diameter_um", q->diameter[size]);
-        mpm_io_json_number(&j, "velocity_m_s", q->velocity[size]);
-        mpm_io_json_integer(&j, "tests", side->tests);
-        mpm_io_json_integer(&j, "bonded", side->bonded);
-        mpm_io_json_string(&j, "fit", side->why);
-        if (side->status >= 0) {
-            mpm_logistic_theta(&side->fit, theta);
-            for (k = 0; k < 6; k++) {
-                snprintf(name, sizeof name, "theta_%d", k);
-                mpm_io_json_number(&j, name, theta[k]);
-            }
-            mpm_io_json_integer(&j, "tests_on_the_wrong_side", side->fit.wrong);
-        }
-        mpm_io_json_close(&j);
-    }
+    for (k = 0; k < 2; k++) write_side(&j, q, k, &r->side[k]);
     mpm_io_json_string(&j, "fit_parameters", strcmp(q->scale, "log") ? "G_c, Gdot_c" : "log10 G_c, log10 Gdot_c");
     options_json(&j, o, n);
     return mpm_io_json_end(&j, fault) >= 0;
@@ -128,8 +135,8 @@ static int collect(const calibration *q, const study *s, const option *o, int n,
         snprintf(message, room, "no finished task in %.300s/runs with these options", s->folder);
         return 0;
     }
-    snprintf(path, sizeof path, "%s/classes.png", s->folder);
-    if (!write_tasks(q, s, &fault) || !calibration_draw(q, &r, path, "examples/studies/calibrate.c", &fault) ||
+    file_in(s->folder, "classes.png", path, sizeof path);
+    if (!write_tasks(q, s, &fault) || !calibration_draw(q, &r, path, program, &fault) ||
         !write_summary(q, &r, s, o, n, &fault)) {
         mpm_io_fault_text(message, room, &fault);
         return 0;
@@ -138,113 +145,125 @@ static int collect(const calibration *q, const study *s, const option *o, int n,
     return 1;
 }
 
-static int check(const calibration *q, char *m, size_t n)
+/* ---- main ---------------------------------------------------------------------------------- */
+
+/* What to do with the sweep. */
+typedef struct errand {
+    int list, collect;
+    long task; /* < 0: all */
+} errand;
+
+static int options(calibration *q, study *s, errand *e, option *o)
+{
+    int n = study_case_options(&q->base, o);
+    option_drop(o, &n, "diameter"); /* what the sweep sets */
+    option_drop(o, &n, "velocity");
+    option_drop(o, &n, "gc");
+    option_drop(o, &n, "gdot");
+    option_add_word(o, &n, "substrate", &q->substrate, STUDY_SUBSTRATES, "source A's sizes, or 5 x 2.5 diameters");
+    option_add(o, &n, "gc-low", OPTION_REAL, &q->gc[0], "range of G_c, J/m2");
+    option_add(o, &n, "gc-high", OPTION_REAL, &q->gc[1], "");
+    option_add(o, &n, "gdot-low", OPTION_REAL, &q->gdot[0], "range of Gdot_c, J/m2/us");
+    option_add(o, &n, "gdot-high", OPTION_REAL, &q->gdot[1], "");
+    option_add(o, &n, "columns", OPTION_LONG, &q->columns, "values of G_c");
+    option_add(o, &n, "rows", OPTION_LONG, &q->rows, "values of Gdot_c");
+    option_add_word(o, &n, "scale", &q->scale, CALIBRATION_SCALES, "the steps, and what the fit sees");
+    option_add(o, &n, "plain", OPTION_FLAG, &q->plain, "run every pair, not only where the class changes");
+    option_add(o, &n, "diameter-1", OPTION_REAL, &q->diameter[0], "um");
+    option_add(o, &n, "velocity-1", OPTION_REAL, &q->velocity[0], "m/s");
+    option_add(o, &n, "diameter-2", OPTION_REAL, &q->diameter[1], "um");
+    option_add(o, &n, "velocity-2", OPTION_REAL, &q->velocity[1], "m/s");
+    option_add_word(o, &n, "rule", &q->rule, CRITICAL_RULES, "what counts as bonded, see critical_velocity");
+    option_add(o, &n, "pbcp-1", OPTION_REAL, &q->pbcp[0], "rule thesis: least PBCP, %; 0: source A's for the grid");
+    option_add(o, &n, "pbcp-2", OPTION_REAL, &q->pbcp[1], "");
+    option_add(o, &n, "restitution-1", OPTION_REAL, &q->restitution[0],
+               "rule thesis: highest rebound ratio; 0: source A's");
+    option_add(o, &n, "restitution-2", OPTION_REAL, &q->restitution[1], "");
+    option_add(o, &n, "stays", OPTION_REAL, &q->stays, "rule stays: the late mean velocity is below, m/s");
+    option_add(o, &n, "ridge", OPTION_REAL, &q->ridge, "of the fits: holds those of separable classes back");
+    option_add(o, &n, "list", OPTION_FLAG, &e->list, "print the tasks that are not done");
+    option_add(o, &n, "task", OPTION_LONG, &e->task, "do this task only; < 0: all");
+    option_add(o, &n, "collect", OPTION_FLAG, &e->collect, "fit and draw what is done, run nothing");
+    study_options(s, o, &n);
+    return n;
+}
+
+/* The sweep without its sizes' cases. */
+static int check_sweep(const calibration *q, char *m, size_t n)
+{
+    int k;
+    for (k = 0; k < 2; k++)
+        if (!case_wants(q->pbcp[k] >= 0, k ? "pbcp-2" : "pbcp-1", q->pbcp[k], "must be >= 0 %", m, n) ||
+            !case_wants(q->restitution[k] >= 0, k ? "restitution-2" : "restitution-1", q->restitution[k],
+                        "must be >= 0", m, n) ||
+            !case_wants(q->velocity[k] > 0, k ? "velocity-2" : "velocity-1", q->velocity[k], "must be > 0 m/s", m, n))
+            return 0;
+    return case_wants(q->gc[0] > 0, "gc-low", q->gc[0], "must be > 0 J/m2", m, n) &&
+           case_wants(q->gc[1] > q->gc[0] && q->gc[1] < 1e30, "gc-high", q->gc[1], "must be over --gc-low", m, n) &&
+           case_wants(q->gdot[0] > 0, "gdot-low", q->gdot[0], "must be > 0 J/m2/us", m, n) &&
+           case_wants(q->gdot[1] > q->gdot[0] && q->gdot[1] < 1e30, "gdot-high", q->gdot[1], "must be over --gdot-low",
+                      m, n) &&
+           case_wants(q->columns >= 5, "columns", (double)q->columns, "must be 5 or more", m, n) &&
+           case_wants(q->rows >= 5, "rows", (double)q->rows, "must be 5 or more", m, n) &&
+           case_wants(q->columns < CALIBRATION_NODES && q->rows < CALIBRATION_NODES &&
+                          calibration_nodes(q) <= CALIBRATION_NODES,
+                      "columns", (double)q->columns, "makes more than 4000 pairs", m, n) &&
+           case_wants(q->stays > 0, "stays", q->stays, "must be > 0 m/s", m, n) &&
+           case_wants(q->ridge >= 0 && q->ridge < 1e6, "ridge", q->ridge, "must be >= 0", m, n);
+}
+
+static int check(const calibration *q, const errand *e, char *m, size_t n)
 {
     impact_case c;
     int k;
-    if (!(case_knows("thesis|large", "substrate", q->substrate, m, n) &&
-          case_knows("log|linear", "scale", q->scale, m, n) && case_knows("thesis|stays", "rule", q->rule, m, n) &&
-          case_wants(q->gc[0] > 0, "gc-low", q->gc[0], "must be > 0 J/m2", m, n) &&
-          case_wants(q->gc[1] > q->gc[0] && q->gc[1] < 1e30, "gc-high", q->gc[1], "must be over --gc-low", m, n) &&
-          case_wants(q->gdot[0] > 0, "gdot-low", q->gdot[0], "must be > 0 J/m2/us", m, n) &&
-          case_wants(q->gdot[1] > q->gdot[0] && q->gdot[1] < 1e30, "gdot-high", q->gdot[1], "must be over --gdot-low",
-                     m, n) &&
-          case_wants(q->columns >= 5, "columns", (double)q->columns, "must be 5 or more", m, n) &&
-          case_wants(q->rows >= 5, "rows", (double)q->rows, "must be 5 or more", m, n) &&
-          case_wants(q->columns < CALIBRATION_NODES && q->rows < CALIBRATION_NODES &&
-                         calibration_nodes(q) <= CALIBRATION_NODES,
-                     "columns", (double)q->columns, "makes more than 4000 pairs", m, n) &&
-          case_wants(q->stays > 0, "stays", q->stays, "must be > 0 m/s", m, n) &&
-          case_wants(q->ridge >= 0 && q->ridge < 1e6, "ridge", q->ridge, "must be >= 0", m, n)))
-        return 0;
+    if (!check_sweep(q, m, n)) return 0;
     if (strcmp(q->base.bond, "energy")) {
         snprintf(m, n, "--bond %s: the sweep is over G_c and Gdot_c, which only --bond energy has", q->base.bond);
         return 0;
     }
-    for (k = 0; k < 2; k++)
-        if (!case_wants(q->pbcp[k] >= 0, k ? "pbcp-2" : "pbcp-1", q->pbcp[k], "must be >= 0 %", m, n) ||
-            !case_wants(q->restitution[k] >= 0, k ? "restitution-2" : "restitution-1", q->restitution[k],
-                          "must be >= 0", m, n) ||
-            !case_wants(q->velocity[k] > 0, k ? "velocity-2" : "velocity-1", q->velocity[k], "must be > 0 m/s", m, n))
-            return 0;
     for (k = 0; k < 2; k++) { /* behind the others: it divides by the columns */
         c = calibration_case(q, k, 0);
         if (!impact_check(&c, m, n)) return 0;
     }
-    return 1;
+    if (e->task < 2 * calibration_nodes(q)) return 1;
+    snprintf(m, n, "--task %ld: there are %ld, from 0", e->task, 2 * calibration_nodes(q));
+    return 0;
+}
+
+/* The runs that the errand wants. As study_need. */
+static int run(const calibration *q, study *s, const errand *e, char *message, size_t n)
+{
+    const long nodes = calibration_nodes(q);
+    double value[STUDY_VALUES];
+    impact_case c;
+    int status;
+    if (e->task < 0) status = calibration_run(q, s, message, n);
+    else {
+        c = calibration_case(q, (int)(e->task / nodes), e->task % nodes);
+        s->planned = 1;
+        status = study_need(s, &c, value, message, n);
+    }
+    study_progress_end(s);
+    return status;
 }
 
 int main(int argc, char **argv)
 {
     calibration q = calibration_default();
     study s = study_of("build/calibrate-out");
+    errand e = {0, 0, -1};
     option o[IMPACT_OPTIONS];
     char message[400];
-    long task = -1, tasks;
-    int n, parsed, status = 1, listing = 0, collecting = 0, whole = 0;
-    n = study_case_options(&q.base, o);
-    option_drop(o, &n, "diameter"); /* what the sweep sets */
-    option_drop(o, &n, "velocity");
-    option_drop(o, &n, "gc");
-    option_drop(o, &n, "gdot");
-    option_add(o, &n, "substrate", OPTION_TEXT, &q.substrate, "thesis|large: source A's sizes, or 5 x 2.5 diameters");
-    option_add(o, &n, "gc-low", OPTION_REAL, &q.gc[0], "range of G_c, J/m2");
-    option_add(o, &n, "gc-high", OPTION_REAL, &q.gc[1], "");
-    option_add(o, &n, "gdot-low", OPTION_REAL, &q.gdot[0], "range of Gdot_c, J/m2/us");
-    option_add(o, &n, "gdot-high", OPTION_REAL, &q.gdot[1], "");
-    option_add(o, &n, "columns", OPTION_LONG, &q.columns, "values of G_c");
-    option_add(o, &n, "rows", OPTION_LONG, &q.rows, "values of Gdot_c");
-    option_add(o, &n, "scale", OPTION_TEXT, &q.scale, "log|linear: the steps, and what the fit sees");
-    option_add(o, &n, "plain", OPTION_FLAG, &q.plain, "run every pair, not only where the class changes");
-    option_add(o, &n, "diameter-1", OPTION_REAL, &q.diameter[0], "um");
-    option_add(o, &n, "velocity-1", OPTION_REAL, &q.velocity[0], "m/s");
-    option_add(o, &n, "diameter-2", OPTION_REAL, &q.diameter[1], "um");
-    option_add(o, &n, "velocity-2", OPTION_REAL, &q.velocity[1], "m/s");
-    option_add(o, &n, "rule", OPTION_TEXT, &q.rule, "thesis|stays: what counts as bonded, see critical_velocity");
-    option_add(o, &n, "pbcp-1", OPTION_REAL, &q.pbcp[0], "rule thesis: least PBCP, %; 0: source A's for the grid");
-    option_add(o, &n, "pbcp-2", OPTION_REAL, &q.pbcp[1], "");
-    option_add(o, &n, "restitution-1", OPTION_REAL, &q.restitution[0],
-               "rule thesis: highest rebound ratio; 0: source A's");
-    option_add(o, &n, "restitution-2", OPTION_REAL, &q.restitution[1], "");
-    option_add(o, &n, "stays", OPTION_REAL, &q.stays, "rule stays: the late mean velocity is below, m/s");
-    option_add(o, &n, "ridge", OPTION_REAL, &q.ridge, "of the fits: holds those of separable classes back");
-    option_add(o, &n, "whole-time", OPTION_FLAG, &whole, "do not end a run early when the particle has left");
-    option_add(o, &n, "limit", OPTION_LONG, &s.limit, "stop after so many new runs; < 0: never");
-    option_add(o, &n, "list", OPTION_FLAG, &listing, "print the tasks that are not done");
-    option_add(o, &n, "task", OPTION_LONG, &task, "do this task only; < 0: all");
-    option_add(o, &n, "collect", OPTION_FLAG, &collecting, "fit and draw what is done, run nothing");
-    option_add(o, &n, "out", OPTION_TEXT, &s.folder, "output folder");
-    option_add(o, &n, "quiet", OPTION_FLAG, &s.quiet, "no progress line, no table");
-    parsed =
-        options_parse(argc, argv,
-                      "The bond parameters at which two sizes just bond: sweep, boundaries, crossing.\n"
-                      "Writes tasks.csv, classes.png and summary.json; run again after an interruption, it goes on.",
-                      o, n);
-    if (parsed) return parsed < 0;
-    if (!check(&q, message, sizeof message)) return !complain(message);
+    const int n = options(&q, &s, &e, o);
+    int status = options_parse(argc, argv, "The bond parameters at which two sizes just bond: sweep, boundaries, "
+                               "crossing.\nWrites tasks.csv, classes.png and summary.json; run again after an "
+                               "interruption, it goes on.", o, n);
+    if (status) return status < 0;
+    if (!check(&q, &e, message, sizeof message)) return !complain(message);
     calibration_tolerances(q.base.cell, q.base.spacing, q.pbcp, q.restitution);
-    s.early = !whole;
-    tasks = 2 * calibration_nodes(&q);
-    if (listing) return list(&q, &s);
-    if (task >= tasks) {
-        snprintf(message, sizeof message, "--task %ld: there are %ld, from 0", task, tasks);
-        return !complain(message);
-    }
-    if (task >= 0) {
-        const impact_case c = calibration_case(&q, (int)(task / calibration_nodes(&q)), task % calibration_nodes(&q));
-        double value[STUDY_VALUES];
-        s.planned = 1;
-        status = study_need(&s, &c, value, message, sizeof message);
-        study_progress_end(&s);
-    } else if (!collecting) {
-        status = calibration_run(&q, &s, message, sizeof message);
-        study_progress_end(&s);
-    }
-    if (status == 0) return !complain(message);
-    if (status < 0) {
-        printf("stopped after %ld new runs; run again to go on\n", s.fresh);
-        return 3;
-    }
-    if (task >= 0) return 0;
-    return collect(&q, &s, o, n, message, sizeof message) ? 0 : !complain(message);
+    if (e.list) return list(&q, &s);
+    status = e.collect && e.task < 0 ? 1 : run(&q, &s, &e, message, sizeof message);
+    if (status < 0) return study_stopped(&s);
+    if (status > 0 && e.task < 0) status = collect(&q, &s, o, n, message, sizeof message);
+    return status > 0 ? 0 : !complain(message);
 }

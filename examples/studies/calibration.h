@@ -8,10 +8,12 @@
 
 #define CALIBRATION_NODES 4000 /* of one size */
 
+#define CALIBRATION_SCALES "log|linear"
+
 /* The sweep: columns x rows pairs, for two sizes. Task number (size * rows + row) * columns + column. */
 typedef struct calibration {
     impact_case base;               /* what both sizes share */
-    const char *substrate, *scale, *rule; /* log|linear; thesis|stays */
+    const char *substrate, *scale, *rule; /* words of STUDY_SUBSTRATES, CALIBRATION_SCALES, CRITICAL_RULES */
     double gc[2], gdot[2];          /* ranges, J/m2, J/m2/us */
     long columns, rows;             /* pairs along G_c, Gdot_c */
     int plain;                      /* 1: every pair; 0: only where the class changes */
@@ -182,39 +184,40 @@ typedef struct calibration_result {
     int same;            /* 1: both sizes have the same class everywhere, and one boundary: no crossing is named */
 } calibration_result;
 
-/* Fits both sizes and crosses their boundaries. */
-static inline void calibration_collect(const calibration *q, const study *s, calibration_result *r)
+/* What is known of one size, and the boundary fitted to it. */
+static inline void calibration_fit(const calibration *q, const study *s, int size, calibration_side *side)
 {
     static double x1[CALIBRATION_NODES], x2[CALIBRATION_NODES];
     static int outcome[CALIBRATION_NODES];
-    double low[2], high[2];
     long k;
-    int size;
-    r->points = 0;
-    for (size = 0; size < 2; size++) {
-        calibration_side *side = &r->side[size];
-        calibration_look(q, s, size, &side->map);
-        side->tests = side->bonded = 0;
-        for (k = 0; k < calibration_nodes(q); k++) {
-            if (side->map.bonds[k] < 0) continue;
-            x1[side->tests] = calibration_x(q, calibration_gc(q, k));
-            x2[side->tests] = calibration_x(q, calibration_gdot(q, k));
-            outcome[side->tests++] = side->map.bonds[k];
-            side->bonded += side->map.bonds[k];
-        }
-        side->status = mpm_logistic_fit(&side->fit, x1, x2, outcome, side->tests, q->ridge, 200, NULL);
-        side->why = mpm_status_text(side->status);
-        if (side->bonded == 0 || side->bonded == side->tests) side->why = "one class only";
-        if (side->tests < 6) side->why = "fewer than six runs";
+    calibration_look(q, s, size, &side->map);
+    side->tests = side->bonded = 0;
+    for (k = 0; k < calibration_nodes(q); k++) {
+        if (side->map.bonds[k] < 0) continue;
+        x1[side->tests] = calibration_x(q, calibration_gc(q, k));
+        x2[side->tests] = calibration_x(q, calibration_gdot(q, k));
+        outcome[side->tests++] = side->map.bonds[k];
+        side->bonded += side->map.bonds[k];
     }
+    side->status = mpm_logistic_fit(&side->fit, x1, x2, outcome, side->tests, q->ridge, 200, NULL);
+    side->why = mpm_status_text(side->status);
+    if (side->bonded == 0 || side->bonded == side->tests) side->why = "one class only";
+    if (side->tests < 6) side->why = "fewer than six runs";
+}
+
+/* Fits both sizes and crosses their boundaries. */
+static inline void calibration_collect(const calibration *q, const study *s, calibration_result *r)
+{
+    double low[2], high[2];
+    int size, k, fitted;
+    for (size = 0; size < 2; size++) calibration_fit(q, s, size, &r->side[size]);
     low[0] = calibration_x(q, q->gc[0]);
     low[1] = calibration_x(q, q->gdot[0]);
     high[0] = calibration_x(q, q->gc[1]);
     high[1] = calibration_x(q, q->gdot[1]);
-    r->same = r->side[0].status >= 0 && r->side[1].status >= 0 &&
-              !memcmp(r->side[0].map.bonds, r->side[1].map.bonds, (size_t)calibration_nodes(q));
-    if (r->side[0].status >= 0 && r->side[1].status >= 0 && !r->same)
-        r->points = mpm_logistic_cross(&r->side[0].fit, &r->side[1].fit, low, high, r->point);
+    fitted = r->side[0].status >= 0 && r->side[1].status >= 0;
+    r->same = fitted && !memcmp(r->side[0].map.bonds, r->side[1].map.bonds, (size_t)calibration_nodes(q));
+    r->points = fitted && !r->same ? mpm_logistic_cross(&r->side[0].fit, &r->side[1].fit, low, high, r->point) : 0;
     for (k = 0; k < r->points; k++)
         for (size = 0; size < 2; size++) r->point[k][size] = calibration_from(q, r->point[k][size]);
 }
@@ -238,76 +241,86 @@ static inline int calibration_run(const calibration *q, study *s, char *message,
     return 1;
 }
 
+/* ---- the picture ------------------------------------------------------------------------------- */
+
+enum { CALIBRATION_STEPS = 200, CALIBRATION_LINE = 2 * CALIBRATION_STEPS + 1 };
+
+/* The boundary of a size: the lower roots, a break, the upper roots. */
+typedef struct calibration_line {
+    mpm_real x[CALIBRATION_LINE], y[CALIBRATION_LINE];
+    char name[40];
+} calibration_line;
+
+static inline void calibration_trace(const calibration *q, const calibration_side *side, calibration_line *l)
+{
+    const double left = calibration_x(q, q->gc[0]), right = calibration_x(q, q->gc[1]);
+    const double low = calibration_x(q, q->gdot[0]), high = calibration_x(q, q->gdot[1]);
+    double root[2];
+    int which, t;
+    l->x[CALIBRATION_STEPS] = l->y[CALIBRATION_STEPS] = (mpm_real)nan("");
+    for (t = 0; t < CALIBRATION_STEPS; t++) {
+        const double x = left + t * (right - left) / (CALIBRATION_STEPS - 1);
+        const int roots = side->status >= 0 ? mpm_logistic_roots(&side->fit, x, low, high, root) : 0;
+        for (which = 0; which < 2; which++) {
+            const int at = which * (CALIBRATION_STEPS + 1) + t;
+            l->x[at] = (mpm_real)calibration_from(q, x);
+            l->y[at] = (mpm_real)(which < roots ? calibration_from(q, root[which]) : nan(""));
+        }
+    }
+}
+
+/* The pairs that were run, of one class (1: bonded). */
+typedef struct calibration_dots {
+    mpm_real x[CALIBRATION_NODES], y[CALIBRATION_NODES];
+} calibration_dots;
+
+static inline mpm_draw_curve calibration_class(const calibration *q, const calibration_map *m, int bonded,
+                                               calibration_dots *dots)
+{
+    size_t count = 0;
+    long k;
+    for (k = 0; k < calibration_nodes(q); k++) {
+        if (m->bonds[k] != bonded) continue;
+        dots->x[count] = (mpm_real)calibration_gc(q, k);
+        dots->y[count++] = (mpm_real)calibration_gdot(q, k);
+    }
+    return plot_curve(bonded ? "bonded" : "not bonded", dots->x, dots->y, count, MPM_DRAW_DOTS, bonded);
+}
+
 /* The classes of both sizes (of those that have any) in the plane of the parameters, with both boundaries and their
    crossings. */
 static inline int calibration_draw(const calibration *q, const calibration_result *r, const char *path,
                                    const char *note, mpm_fault *fault)
 {
-    enum { STEPS = 200 };
-    static mpm_real x[2][2][CALIBRATION_NODES], y[2][2][CALIBRATION_NODES], bx[2][2 * STEPS + 1], by[2][2 * STEPS + 1];
+    static calibration_dots dots[2][2];
+    static calibration_line line[2];
     mpm_real px[4], py[4];
     mpm_draw_curve curve[2][5];
     mpm_draw_plot_desc d[2];
-    char title[2][80], name[2][40];
-    const double high = calibration_x(q, q->gdot[1]), low = calibration_x(q, q->gdot[0]);
-    double root[2];
-    long k;
-    int size, which, t, plots = 0;
-    for (size = 0; size < 2; size++) /* the lower roots, a break, the upper roots */
-        for (which = 0; which < 2; which++)
-            for (t = 0; t < STEPS; t++) {
-                const double x1 = calibration_x(q, q->gc[0]) +
-                                  t * (calibration_x(q, q->gc[1]) - calibration_x(q, q->gc[0])) / (STEPS - 1);
-                const int at = which * (STEPS + 1) + t;
-                const calibration_side *side = &r->side[size];
-                const int roots = side->status >= 0 ? mpm_logistic_roots(&side->fit, x1, low, high, root) : 0;
-                bx[size][at] = (mpm_real)calibration_from(q, x1);
-                by[size][at] = (mpm_real)(which < roots ? calibration_from(q, root[which]) : nan(""));
-                bx[size][STEPS] = by[size][STEPS] = (mpm_real)nan("");
-            }
-    for (t = 0; t < r->points; t++) {
-        px[t] = (mpm_real)r->point[t][0];
-        py[t] = (mpm_real)r->point[t][1];
+    char title[2][80];
+    int size, k, plots = 0;
+    for (k = 0; k < 2; k++) {
+        calibration_trace(q, &r->side[k], &line[k]);
+        snprintf(line[k].name, sizeof line[k].name, "boundary, %g um", q->diameter[k]);
+    }
+    for (k = 0; k < r->points; k++) {
+        px[k] = (mpm_real)r->point[k][0];
+        py[k] = (mpm_real)r->point[k][1];
     }
     for (size = 0; size < 2; size++) {
+        mpm_draw_curve *c = curve[size];
         if (r->side[size].tests == 0) continue;
-        memset(curve[size], 0, sizeof curve[size]);
-        for (k = 0; k < calibration_nodes(q); k++) {
-            const int class_of = r->side[size].map.bonds[k];
-            if (class_of < 0) continue;
-            x[size][class_of][curve[size][class_of].count] = (mpm_real)calibration_gc(q, k);
-            y[size][class_of][curve[size][class_of].count++] = (mpm_real)calibration_gdot(q, k);
-        }
-        for (which = 0; which < 2; which++) {
-            curve[size][which].name = which ? "bonded" : "not bonded";
-            curve[size][which].x = x[size][which];
-            curve[size][which].y = y[size][which];
-            curve[size][which].mark = MPM_DRAW_DOTS;
-            curve[size][which].color = which;
-            curve[size][2 + which].x = bx[which];
-            curve[size][2 + which].y = by[which];
-            curve[size][2 + which].count = 2 * STEPS + 1;
-            curve[size][2 + which].mark = which == size ? MPM_DRAW_CURVE : MPM_DRAW_DASHED;
-            curve[size][2 + which].color = 2 + which;
-            snprintf(name[which], sizeof name[which], "boundary, %g um", q->diameter[which]);
-            curve[size][2 + which].name = r->side[which].status >= 0 ? name[which] : NULL;
-        }
-        curve[size][4].name = r->points > 0 ? "crossing" : NULL;
-        curve[size][4].x = px;
-        curve[size][4].y = py;
-        curve[size][4].count = (size_t)r->points;
-        curve[size][4].mark = MPM_DRAW_DOTS;
-        curve[size][4].color = 5;
-        d[plots] = mpm_draw_plot_desc_default();
-        d[plots].curves = curve[size];
-        d[plots].curve_count = 5;
-        d[plots].log_x = d[plots].log_y = !strcmp(q->scale, "log");
-        d[plots].x_label = "G_c, J/m2";
-        d[plots].y_label = "Gdot_c, J/m2/us";
+        for (k = 0; k < 2; k++) c[k] = calibration_class(q, &r->side[size].map, k, &dots[size][k]);
+        for (k = 0; k < 2; k++)
+            c[2 + k] = plot_curve(r->side[k].status >= 0 ? line[k].name : NULL, line[k].x, line[k].y, CALIBRATION_LINE,
+                                  k == size ? MPM_DRAW_CURVE : MPM_DRAW_DASHED, 2 + k);
+        c[4] = plot_curve(r->points > 0 ? "crossing" : NULL, px, py, (size_t)r->points, MPM_DRAW_DOTS, 5);
         snprintf(title[size], sizeof title[size], "%g um at %g m/s", q->diameter[size], q->velocity[size]);
-        d[plots++].title = title[size];
+        d[plots] = plot_of(title[size], "G_c, J/m2", "Gdot_c, J/m2/us", c, 5);
+        d[plots].log_x = d[plots].log_y = !strcmp(q->scale, "log");
+        plots++;
     }
-    return study_plots(path, d, plots, plots, note, fault);
+    return plots_png(path, d, plots, plots, 440, note, fault) >= 0;
 }
 
 #endif

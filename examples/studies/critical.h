@@ -15,6 +15,8 @@ typedef struct critical_rule {
     double pbcp, v_rest, stays; /* %, m/s, m/s; pbcp, v_rest 0: source A's for the size */
 } critical_rule;
 
+#define CRITICAL_RULES "thesis|stays"
+
 static inline critical_rule critical_rule_default(void)
 {
     critical_rule r;

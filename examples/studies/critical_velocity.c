@@ -11,11 +11,25 @@
 #define OFFSETS 32
 
 typedef struct request {
-    const char *folder, *substrate;
+    study s;
+    impact_case c;
+    const char *substrate;
     long offsets;
     critical_rule rule;
     critical_range range;
+    option o[IMPACT_OPTIONS];
+    int n; /* options */
 } request;
+
+typedef struct findings {
+    critical_curve curve;
+    critical_answer answer[OFFSETS];
+    critical_spread spread;
+} findings;
+
+static const char *const program = "examples/studies/critical_velocity.c";
+
+/* ---- what is written --------------------------------------------------------------------------- */
 
 /* Every run: offset by offset in the order of velocity. */
 static int by_velocity(const void *a, const void *b)
@@ -34,8 +48,7 @@ static int write_curve(const request *q, const critical_curve *curve, mpm_fault 
         strcat(columns, ",");
         strcat(columns, study_name[v]);
     }
-    snprintf(path, sizeof path, "%s/curve.csv", q->folder);
-    mpm_io_csv_begin(&t, path, columns, "examples/studies/critical_velocity.c", fault);
+    mpm_io_csv_begin(&t, file_in(q->s.folder, "curve.csv", path, sizeof path), columns, program, fault);
     for (k = 0; k < curve->runs; k++) {
         mpm_io_csv_real(&t, (mpm_real)curve->run[k].offset);
         mpm_io_csv_real(&t, (mpm_real)curve->run[k].velocity);
@@ -57,41 +70,39 @@ static int draw_curve(const request *q, const critical_curve *curve, mpm_fault *
         const critical_run *r = &curve->run[k];
         if (k == 0 || r->offset != curve->run[k - 1].offset) {
             snprintf(name[count], sizeof name[0], "grid at %.3g um", r->offset);
-            for (p = 0; p < 2; p++) {
-                memset(&line[p][count], 0, sizeof line[0][0]);
-                line[p][count].name = name[count];
-                line[p][count].x = x + k;
-                line[p][count].y = y[p] + k;
-                line[p][count].color = count;
-            }
+            for (p = 0; p < 2; p++) line[p][count] = plot_curve(name[count], x + k, y[p] + k, 0, MPM_DRAW_CURVE, count);
             count++;
         }
         x[k] = (mpm_real)r->velocity;
         y[0][k] = (mpm_real)r->value[STUDY_PBCP];
         y[1][k] = (mpm_real)r->value[STUDY_V_REST];
-        line[0][count - 1].count++;
-        line[1][count - 1].count++;
+        for (p = 0; p < 2; p++) line[p][count - 1].count++;
     }
-    for (p = 0; p < 2; p++) {
-        d[p] = mpm_draw_plot_desc_default();
-        d[p].curves = line[p];
-        d[p].curve_count = count;
-        d[p].x_label = "impact velocity, m/s";
-        d[p].y_label = p ? "m/s" : "%";
-        d[p].title = p ? "rebound velocity" : "PBCP";
-    }
-    snprintf(path, sizeof path, "%s/curve.png", q->folder);
-    return study_plots(path, d, 2, 2, "examples/studies/critical_velocity.c", fault);
+    d[0] = plot_of("PBCP", "impact velocity, m/s", "%", line[0], count);
+    d[1] = plot_of("rebound velocity", "impact velocity, m/s", "m/s", line[1], count);
+    return plots_png(file_in(q->s.folder, "curve.png", path, sizeof path), d, 2, 2, 440, program, fault) >= 0;
 }
 
-static int write_summary(const request *q, const critical_answer *a, const critical_spread *s, const study *st,
-                         const option *o, int n, mpm_fault *fault)
+static void write_answer(mpm_io_json *j, const critical_answer *a)
 {
-    char path[MPM_IO_PATH], name[40];
+    char name[40];
+    snprintf(name, sizeof name, "grid_offset_%.6g_um", a->offset);
+    mpm_io_json_open(j, name);
+    mpm_io_json_number(j, "critical_velocity_m_s", a->velocity);
+    mpm_io_json_number(j, "not_bonded_below_m_s", a->below);
+    mpm_io_json_number(j, "pbcp_percent", a->pbcp);
+    mpm_io_json_number(j, "v_rest_m_s", a->v_rest);
+    mpm_io_json_integer(j, "not_bonded_above", a->lost);
+    mpm_io_json_close(j);
+}
+
+static int write_summary(const request *q, const findings *f, mpm_fault *fault)
+{
+    const critical_spread *s = &f->spread;
+    char path[MPM_IO_PATH];
     mpm_io_json j;
     int k;
-    snprintf(path, sizeof path, "%s/summary.json", q->folder);
-    mpm_io_json_begin(&j, path, fault);
+    mpm_io_json_begin(&j, file_in(q->s.folder, "summary.json", path, sizeof path), fault);
     /* null: nothing bonded at half of the positions or more */
     mpm_io_json_number(&j, "critical_velocity_m_s", s->median);
     mpm_io_json_number(&j, "not_bonded_below_m_s", s->middle.below);
@@ -100,22 +111,13 @@ static int write_summary(const request *q, const critical_answer *a, const criti
     mpm_io_json_integer(&j, "offsets_without_bond", s->none);
     mpm_io_json_number(&j, "pbcp_percent", s->middle.pbcp);
     mpm_io_json_number(&j, "v_rest_m_s", s->middle.v_rest);
-    mpm_io_json_integer(&j, "runs", st->done);
-    mpm_io_json_integer(&j, "runs_made_now", st->fresh);
-    mpm_io_json_number(&j, "cpu_seconds_now", st->spent);
+    mpm_io_json_integer(&j, "runs", q->s.done);
+    mpm_io_json_integer(&j, "runs_made_now", q->s.fresh);
+    mpm_io_json_number(&j, "cpu_seconds_now", q->s.spent);
     mpm_io_json_open(&j, "by_offset");
-    for (k = 0; k < q->offsets; k++) {
-        snprintf(name, sizeof name, "grid_offset_%.6g_um", a[k].offset);
-        mpm_io_json_open(&j, name);
-        mpm_io_json_number(&j, "critical_velocity_m_s", a[k].velocity);
-        mpm_io_json_number(&j, "not_bonded_below_m_s", a[k].below);
-        mpm_io_json_number(&j, "pbcp_percent", a[k].pbcp);
-        mpm_io_json_number(&j, "v_rest_m_s", a[k].v_rest);
-        mpm_io_json_integer(&j, "not_bonded_above", a[k].lost);
-        mpm_io_json_close(&j);
-    }
+    for (k = 0; k < q->offsets; k++) write_answer(&j, &f->answer[k]);
     mpm_io_json_close(&j);
-    options_json(&j, o, n);
+    options_json(&j, q->o, q->n);
     return mpm_io_json_end(&j, fault) >= 0;
 }
 
@@ -127,30 +129,54 @@ static const char *velocity_text(double velocity, const critical_range *range, c
     return text;
 }
 
-static void print_answers(const impact_case *c, const request *q, const critical_answer *a, const critical_spread *s)
+static void print_answers(const request *q, const findings *f)
 {
+    const critical_spread *s = &f->spread;
     char text[3][60];
     int k;
-    printf("\n  %s, %g um, rule %s; lowest velocity that bonds\n\n", c->material, c->diameter, q->rule.name);
+    printf("\n  %s, %g um, rule %s; lowest velocity that bonds\n\n", q->c.material, q->c.diameter, q->rule.name);
     printf("  grid offset um   critical m/s   not below   PBCP %%   rebound m/s   not bonded above\n");
     for (k = 0; k < q->offsets; k++) {
-        if (a[k].velocity < HUGE_VAL)
-            printf("  %14.4g   %12.4g   %9.4g   %6.2f   %11.3f   %16d\n", a[k].offset, a[k].velocity, a[k].below,
-                   a[k].pbcp, a[k].v_rest, a[k].lost);
+        const critical_answer *a = &f->answer[k];
+        if (a->velocity < HUGE_VAL)
+            printf("  %14.4g   %12.4g   %9.4g   %6.2f   %11.3f   %16d\n", a->offset, a->velocity, a->below, a->pbcp,
+                   a->v_rest, a->lost);
         else
-            printf("  %14.4g   %s\n", a[k].offset, velocity_text(HUGE_VAL, &q->range, text[0], sizeof text[0]));
+            printf("  %14.4g   %s\n", a->offset, velocity_text(HUGE_VAL, &q->range, text[0], sizeof text[0]));
     }
     printf("\n  median %s, lowest %s, highest %s; %s/curve.csv, curve.png, summary.json\n",
            velocity_text(s->median, &q->range, text[0], sizeof text[0]),
            velocity_text(s->lowest, &q->range, text[1], sizeof text[1]),
-           velocity_text(s->highest, &q->range, text[2], sizeof text[2]), q->folder);
+           velocity_text(s->highest, &q->range, text[2], sizeof text[2]), q->s.folder);
+}
+
+/* ---- main ---------------------------------------------------------------------------------- */
+
+static void options(request *q)
+{
+    option *o = q->o;
+    int n = study_case_options(&q->c, o);
+    option_drop(o, &n, "velocity");    /* what is looked for */
+    option_drop(o, &n, "grid-offset"); /* by --offsets */
+    option_add_word(o, &n, "substrate", &q->substrate, STUDY_SUBSTRATES, "source A's sizes, or 5 x 2.5 diameters");
+    option_add_word(o, &n, "rule", &q->rule.name, CRITICAL_RULES, "what counts as bonded");
+    option_add(o, &n, "pbcp", OPTION_REAL, &q->rule.pbcp, "rule thesis: least PBCP, %; 0: 5, up to 14 um 4.8");
+    option_add(o, &n, "v-rest", OPTION_REAL, &q->rule.v_rest,
+               "rule thesis: highest rebound, m/s; 0: 0.6, up to 14 um 0.9");
+    option_add(o, &n, "stays", OPTION_REAL, &q->rule.stays, "rule stays: the late mean velocity is below, m/s");
+    option_add(o, &n, "low", OPTION_REAL, &q->range.low, "lowest velocity, m/s");
+    option_add(o, &n, "high", OPTION_REAL, &q->range.high, "highest velocity, m/s");
+    option_add(o, &n, "scan", OPTION_REAL, &q->range.scan, "distance of the first velocities, m/s");
+    option_add(o, &n, "step", OPTION_REAL, &q->range.step, "width of the bracket at the end, m/s");
+    option_add(o, &n, "offsets", OPTION_LONG, &q->offsets, "grid offsets: k/N of a cell, k = 0 .. N-1");
+    study_options(&q->s, o, &n);
+    q->n = n;
 }
 
 /* Refuses what makes no search. */
-static int check(const request *q, const impact_case *c, char *m, size_t n)
+static int check(const request *q, char *m, size_t n)
 {
-    return impact_check(c, m, n) && case_knows("thesis|stays", "rule", q->rule.name, m, n) &&
-           case_knows("thesis|large", "substrate", q->substrate, m, n) &&
+    return impact_check(&q->c, m, n) &&
            case_wants(q->offsets >= 1 && q->offsets <= OFFSETS, "offsets", (double)q->offsets, "must be 1 .. 32", m,
                       n) &&
            case_wants(q->rule.pbcp >= 0, "pbcp", q->rule.pbcp, "must be >= 0 %", m, n) &&
@@ -167,67 +193,46 @@ static int check(const request *q, const impact_case *c, char *m, size_t n)
                       "scan", q->range.scan, "makes more than 2000 runs", m, n);
 }
 
+/* All offsets. As study_need. */
+static int search(request *q, findings *f, char *message, size_t n)
+{
+    int k, status = 1;
+    q->s.planned = critical_cost(&q->range) * q->offsets;
+    for (k = 0; k < q->offsets && status > 0; k++) {
+        q->c.offset = q->c.cell * k / (double)q->offsets;
+        status = critical_search(&q->s, &q->c, &q->range, &q->rule, &f->curve, &f->answer[k], message, n);
+        study_progress_end(&q->s);
+    }
+    if (status <= 0) return status;
+    f->spread = critical_summary(f->answer, (int)q->offsets);
+    qsort(f->curve.run, (size_t)f->curve.runs, sizeof f->curve.run[0], by_velocity);
+    return 1;
+}
+
 int main(int argc, char **argv)
 {
-    static critical_curve curve;
-    critical_answer answer[OFFSETS];
-    critical_spread spread;
-    impact_case c = study_case_default();
-    study st = study_of("build/critical_velocity-out");
+    static findings f;
     request q;
-    option o[IMPACT_OPTIONS];
     char message[400];
     mpm_fault fault;
-    int n, k, status, whole = 0, parsed;
-    q.folder = st.folder;
+    int status;
+    q.s = study_of("build/critical_velocity-out");
+    q.c = study_case_default();
     q.substrate = "thesis";
     q.offsets = 1;
     q.rule = critical_rule_default();
     q.range = critical_range_default();
-    n = study_case_options(&c, o);
-    option_drop(o, &n, "velocity");    /* what is looked for */
-    option_drop(o, &n, "grid-offset"); /* by --offsets */
-    option_add(o, &n, "substrate", OPTION_TEXT, &q.substrate, "thesis|large: source A's sizes, or 5 x 2.5 diameters");
-    option_add(o, &n, "rule", OPTION_TEXT, &q.rule.name, "thesis|stays: what counts as bonded");
-    option_add(o, &n, "pbcp", OPTION_REAL, &q.rule.pbcp, "rule thesis: least PBCP, %; 0: 5, up to 14 um 4.8");
-    option_add(o, &n, "v-rest", OPTION_REAL, &q.rule.v_rest,
-               "rule thesis: highest rebound, m/s; 0: 0.6, up to 14 um 0.9");
-    option_add(o, &n, "stays", OPTION_REAL, &q.rule.stays, "rule stays: the late mean velocity is below, m/s");
-    option_add(o, &n, "low", OPTION_REAL, &q.range.low, "lowest velocity, m/s");
-    option_add(o, &n, "high", OPTION_REAL, &q.range.high, "highest velocity, m/s");
-    option_add(o, &n, "scan", OPTION_REAL, &q.range.scan, "distance of the first velocities, m/s");
-    option_add(o, &n, "step", OPTION_REAL, &q.range.step, "width of the bracket at the end, m/s");
-    option_add(o, &n, "offsets", OPTION_LONG, &q.offsets, "grid offsets: k/N of a cell, k = 0 .. N-1");
-    option_add(o, &n, "limit", OPTION_LONG, &st.limit, "stop after so many new runs; < 0: never");
-    option_add(o, &n, "whole-time", OPTION_FLAG, &whole, "do not end a run early when the particle has left");
-    option_add(o, &n, "out", OPTION_TEXT, &q.folder, "output folder");
-    option_add(o, &n, "quiet", OPTION_FLAG, &st.quiet, "no progress line, no table");
-    parsed = options_parse(argc, argv, "The lowest impact velocity that bonds (source A, 5.2.2). Writes curve.csv,\n"
+    options(&q);
+    status = options_parse(argc, argv, "The lowest impact velocity that bonds (source A, 5.2.2). Writes curve.csv,\n"
                            "curve.png and summary.json into the output folder; run again after an interruption,\n"
-                           "it goes on.", o, n);
-    if (parsed) return parsed < 0;
-    study_complete(&c, q.substrate);
-    if (!check(&q, &c, message, sizeof message)) return !complain(message);
-    st.folder = q.folder;
-    st.early = !whole;
-    st.planned = critical_cost(&q.range) * q.offsets;
-    for (k = 0; k < q.offsets; k++) {
-        c.offset = c.cell * k / (double)q.offsets;
-        status = critical_search(&st, &c, &q.range, &q.rule, &curve, &answer[k], message, sizeof message);
-        study_progress_end(&st);
-        if (status == 0) return !complain(message);
-        if (status < 0) {
-            printf("stopped after %ld new runs; %ld are done: run again to go on\n", st.fresh, st.done);
-            return 3;
-        }
-    }
-    spread = critical_summary(answer, (int)q.offsets);
-    qsort(curve.run, (size_t)curve.runs, sizeof curve.run[0], by_velocity);
-    if (!write_curve(&q, &curve, &fault) || !draw_curve(&q, &curve, &fault) ||
-        !write_summary(&q, answer, &spread, &st, o, n, &fault)) {
-        mpm_io_fault_text(message, sizeof message, &fault);
-        return !complain(message);
-    }
-    if (!st.quiet) print_answers(&c, &q, answer, &spread);
+                           "it goes on.", q.o, q.n);
+    if (status) return status < 0;
+    study_complete(&q.c, q.substrate);
+    status = check(&q, message, sizeof message) ? search(&q, &f, message, sizeof message) : 0;
+    if (status == 0) return !complain(message);
+    if (status < 0) return study_stopped(&q.s);
+    if (!write_curve(&q, &f.curve, &fault) || !draw_curve(&q, &f.curve, &fault) || !write_summary(&q, &f, &fault))
+        return !report(&fault, q.s.folder);
+    if (!q.s.quiet) print_answers(&q, &f);
     return 0;
 }

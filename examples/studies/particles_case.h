@@ -53,28 +53,18 @@ static inline double particles_extent(const particles_case *q)
     return 2 * fmax(impact_half_width(&q->base), impact_half_height(&q->base));
 }
 
-/* Centres in a cylinder over the substrate, at least the largest extent of a particle and a cell apart, the lowest
-   on the substrate; oblique ones start aside, so that they land where they would without the angle. Sets the
-   substrate's width (spread and a particle) and the time (the fall and 40 ns) where they are 0. Returns 1, or 0
-   with a message. Test: 63_particles. */
-static inline int particles_place(particles_case *q, double spread, double height, long seed, char *message, size_t n)
+/* Draws centres of particles at least `apart` from each other, in a cylinder that leans by `drift` as they fall. Gives
+   up after 200,000 draws: returns 0. */
+static inline int particles_scatter(particles_case *q, double spread, double height, double apart, double drift,
+                                    long seed)
 {
-    const double apart = particles_extent(q) + q->base.cell, pi = 3.14159265358979323846;
-    const double tilt = q->base.angle * pi / 180, down = q->base.velocity * cos(tilt), drift = tan(tilt);
+    const double pi = 3.14159265358979323846;
     uint64_t state = (uint64_t)seed;
-    double least = HUGE_VAL;
     long k, other, tries = 0;
-    if (!(fabs(q->base.substrate_diameter) > 0)) q->base.substrate_diameter = spread + 2 * impact_half_width(&q->base);
-    if (!(fabs(q->base.time) > 0)) q->base.time = 1e3 * height / down + 40;
-    if (!impact_check(&q->base, message, n)) return 0;
     for (k = 0; k < q->count; k++) {
-        double *x = q->center[k], r, phi, d2 = HUGE_VAL;
+        double *x = q->center[k], r, phi, d2;
         do {
-            if (tries++ > 200000) {
-                snprintf(message, n, "--count %ld: no room for so many at %g um (particle and cell) from centre to "
-                         "centre; larger --spread or --height, or smaller --cell", q->count, apart);
-                return 0;
-            }
+            if (tries++ > 200000) return 0;
             r = spread / 2 * sqrt(particles_draw(&state));
             phi = 2 * pi * particles_draw(&state);
             x[0] = r * cos(phi);
@@ -87,8 +77,29 @@ static inline int particles_place(particles_case *q, double spread, double heigh
                 d2 = fmin(d2, dx * dx + dy * dy + dz * dz);
             }
         } while (d2 < apart * apart);
-        least = fmin(least, x[2]);
     }
+    return 1;
+}
+
+/* Centres in a cylinder over the substrate, at least the largest extent of a particle and a cell apart, the lowest
+   on the substrate; oblique ones start aside, so that they land where they would without the angle. Sets the
+   substrate's width (spread and a particle) and the time (the fall and 40 ns) where they are 0. Returns 1, or 0
+   with a message. Test: 63_particles. */
+static inline int particles_place(particles_case *q, double spread, double height, long seed, char *message, size_t n)
+{
+    const double apart = particles_extent(q) + q->base.cell, tilt = q->base.angle * 3.14159265358979323846 / 180;
+    const double down = q->base.velocity * cos(tilt), drift = tan(tilt);
+    double least = HUGE_VAL;
+    long k;
+    if (!(fabs(q->base.substrate_diameter) > 0)) q->base.substrate_diameter = spread + 2 * impact_half_width(&q->base);
+    if (!(fabs(q->base.time) > 0)) q->base.time = 1e3 * height / down + 40;
+    if (!impact_check(&q->base, message, n)) return 0;
+    if (!particles_scatter(q, spread, height, apart, drift, seed)) {
+        snprintf(message, n, "--count %ld: no room for so many at %g um (particle and cell) from centre to centre; "
+                 "larger --spread or --height, or smaller --cell", q->count, apart);
+        return 0;
+    }
+    for (k = 0; k < q->count; k++) least = fmin(least, q->center[k][2]);
     for (k = 0; k < q->count; k++) {
         q->center[k][0] += drift * least;
         q->center[k][2] += impact_half_height(&q->base) - least;
@@ -148,10 +159,12 @@ typedef enum particle_fate {
     PARTICLE_BONDED,
     PARTICLE_RESTING,
     PARTICLE_REBOUNDED,
-    PARTICLE_SHEARED
+    PARTICLE_SHEARED,
+    PARTICLE_FATES
 } particle_fate;
 
-static const char *const particle_fate_text[5] = {"arriving", "bonded", "resting", "rebounded", "sheared off"};
+static const char *const particle_fate_text[PARTICLE_FATES] = {"arriving", "bonded", "resting", "rebounded",
+                                                               "sheared off"};
 
 typedef struct particle_report {
     particle_fate fate;
@@ -190,42 +203,61 @@ static inline void particles_velocity(const mpm_world *w, int32_t body, double v
     if (w->desc.side[0] == MPM_SIDE_SYMMETRY) v[0] = 0;
 }
 
-/* Reports on every particle. Bonded: a chain of bonded nodes leads to the substrate and it moves with the
-   substrate to within 5 m/s; resting: so slow, without such a chain; rebounded: leaves faster upwards
-   than along the face; sheared off: leaves faster along the face; arriving: on its way down. */
+/* Which bodies a chain of bonded nodes leads to from the substrate. */
+static inline void particles_linked(const mpm_world *w, int32_t substrate, int *linked)
+{
+    int changed = 1;
+    int32_t a, b;
+    memset(linked, 0, (size_t)substrate * sizeof *linked);
+    linked[substrate] = 1;
+    while (changed)
+        for (changed = 0, a = 0; a < substrate; a++)
+            for (b = 0; b <= substrate && !linked[a]; b++)
+                if (b != a && linked[b] && mpm_interface_of(w, a, b).bonded > 0) linked[a] = changed = 1;
+}
+
+/* Bonded: a chain of bonded nodes leads to the substrate and it moves with the substrate to within 5 m/s; resting: so
+   slow, without such a chain; rebounded: leaves faster upwards than along the face; sheared off: leaves faster along
+   the face; arriving: on its way down. */
+static inline particle_fate particles_fate(double v_z, double v_along, int linked)
+{
+    if (hypot(v_z, v_along) <= 5) return linked ? PARTICLE_BONDED : PARTICLE_RESTING;
+    if (-v_z > v_along) return PARTICLE_ARRIVING;
+    return v_z >= v_along ? PARTICLE_REBOUNDED : PARTICLE_SHEARED;
+}
+
+static inline double particles_center(const mpm_world *w, int32_t body)
+{
+    const mpm_body *b = &w->body[body];
+    double mass = 0, high = 0;
+    int32_t i;
+    for (i = b->first; i < b->first + b->count; i++) {
+        mass += (double)w->points.mass[i];
+        high += (double)w->points.mass[i] * (double)w->points.x[2][i];
+    }
+    return high / mass;
+}
+
+/* Reports on every particle. */
 static inline void particles_report(const impact *s, const particles_case *q, particle_report *r)
 {
     const mpm_world *w = &s->world;
     const int32_t substrate = (int32_t)q->count;
-    int linked[PARTICLES + 1], changed = 1;
+    int linked[PARTICLES + 1];
     double still[3], v[3];
-    int32_t a, b;
-    memset(linked, 0, sizeof linked);
-    linked[substrate] = 1;
-    while (changed) /* the bonded spread from the substrate */
-        for (changed = 0, a = 0; a < substrate; a++)
-            for (b = 0; b <= substrate && !linked[a]; b++)
-                if (b != a && linked[b] && mpm_interface_of(w, a, b).bonded > 0) linked[a] = changed = 1;
+    int32_t a;
+    particles_linked(w, substrate, linked);
     particles_velocity(w, substrate, still);
     for (a = 0; a < substrate; a++) {
-        const mpm_body *body = &w->body[a];
-        double mass = 0, high = 0;
-        int32_t i;
+        particles_velocity(w, a, v);
         r[a].bond = mpm_bond_measure_body(w, a);
         r[a].nodes = mpm_interface_of(w, a, -1).bonded;
-        r[a].ejected = mpm_rebound_of(w, a, 60).ejected_mass / mpm_body_totals(w, a).mass;
-        for (i = body->first; i < body->first + body->count; i++) {
-            mass += (double)w->points.mass[i];
-            high += (double)w->points.mass[i] * (double)w->points.x[2][i];
-        }
-        r[a].height = high / mass;
-        particles_velocity(w, a, v);
+        r[a].height = particles_center(w, a);
         r[a].v_z = v[2] - still[2];
         r[a].v_along = hypot(v[0] - still[0], v[1] - still[1]);
-        if (hypot(r[a].v_z, r[a].v_along) <= 5) r[a].fate = linked[a] ? PARTICLE_BONDED : PARTICLE_RESTING;
-        else if (-r[a].v_z > r[a].v_along) r[a].fate = PARTICLE_ARRIVING;
-        else r[a].fate = r[a].v_z >= r[a].v_along ? PARTICLE_REBOUNDED : PARTICLE_SHEARED;
-        if (r[a].fate == PARTICLE_ARRIVING) r[a].ejected = 0;
+        r[a].fate = particles_fate(r[a].v_z, r[a].v_along, linked[a]);
+        r[a].ejected = r[a].fate == PARTICLE_ARRIVING
+                           ? 0 : mpm_rebound_of(w, a, 60).ejected_mass / mpm_body_totals(w, a).mass;
     }
 }
 
@@ -319,7 +351,7 @@ static inline int particles_summary(const impact *s, const particles_case *q, co
 {
     const mpm_world *w = &s->world;
     const mpm_totals sums = mpm_body_totals(w, -1);
-    long fates[5] = {0, 0, 0, 0, 0}, a;
+    long fates[PARTICLE_FATES] = {0}, a;
     char path[MPM_IO_PATH];
     mpm_fault fault;
     mpm_io_json j;
@@ -328,7 +360,7 @@ static inline int particles_summary(const impact *s, const particles_case *q, co
     mpm_io_json_begin(&j, file_in(q->out.folder, "summary.json", path, sizeof path), &fault);
     mpm_io_json_integer(&j, "mpm_digits", MPM_DIGITS); /* of the number type */
     mpm_io_json_integer(&j, "particles", q->count);
-    for (k = 0; k < 5; k++) mpm_io_json_integer(&j, particle_fate_text[k], fates[k]);
+    for (k = 0; k < PARTICLE_FATES; k++) mpm_io_json_integer(&j, particle_fate_text[k], fates[k]);
     mpm_io_json_number(&j, "pbcp_percent", mpm_bond_measure_body(w, -1).pbcp);
     mpm_io_json_integer(&j, "points", sums.points);
     mpm_io_json_integer(&j, "steps", w->steps);
@@ -338,8 +370,8 @@ static inline int particles_summary(const impact *s, const particles_case *q, co
                        case_share(sums.kinetic + sums.internal + w->ledger.absorbed + w->ledger.contact +
                                       w->ledger.hold + w->ledger.walls - s->start.kinetic - s->start.internal,
                                   s->start.kinetic));
-    mpm_io_json_integer(&j, "floor_hits", (long long)s->world.tally[MPM_TALLY_BOND_FLOOR]);
-    mpm_io_json_integer(&j, "bond_increments", (long long)s->world.tally[MPM_TALLY_BOND_GROWTH]);
+    mpm_io_json_integer(&j, "floor_hits", (long long)w->tally[MPM_TALLY_BOND_FLOOR]);
+    mpm_io_json_integer(&j, "bond_increments", (long long)w->tally[MPM_TALLY_BOND_GROWTH]);
     mpm_io_json_number(&j, "cpu_seconds", q->out.cpu);
     options_json(&j, o, n);
     return mpm_io_json_end(&j, &fault) >= 0 || report(&fault, path);
@@ -447,9 +479,9 @@ static inline mpm_status particles_checkpoint(impact *s, particles_case *q, int 
 {
     mpm_io_blob blob[MPM_IO_WORLD_BLOBS + PARTICLES + 7]; /* the substrate too */
     uint64_t mark = particles_mark(q);
-    char name[40];
+    char text[20], name[40];
     int n = 0;
-    snprintf(name, sizeof name, "scene %08lx%08lx", (unsigned long)(mark >> 32), (unsigned long)(mark & 0xffffffffu));
+    snprintf(name, sizeof name, "scene %s", study_hash_text(mark, text, sizeof text));
     blob[n++] = particles_blob(name, &mark, sizeof mark);
     n += mpm_io_world_blobs(&s->world, blob + n);
     blob[n++] = particles_blob("start", &s->start, sizeof s->start);

@@ -14,7 +14,10 @@
 #include <time.h>
 
 #include "options.h"
+#include "plots.h"
 #include "spray_view.h"
+
+static const char *const program = "examples/studies/spray_study.c";
 
 /* ---- cases and runs ------------------------------------------------------------------------ */
 
@@ -310,7 +313,7 @@ static mpm_status write_table(const study *st, mpm_fault *fault)
         strcat(columns, value_name[k]);
     }
     snprintf(path, sizeof path, "%s/spray_runs.csv", st->data);
-    if ((status = mpm_io_csv_begin(&csv, path, columns, "examples/studies/spray_study.c", fault)) < 0) return status;
+    if ((status = mpm_io_csv_begin(&csv, path, columns, program, fault)) < 0) return status;
     for (n = 0; n < st->count; n++) {
         const run_case *c = &st->records[n].c;
         if (c->time != st->time) continue;
@@ -340,23 +343,14 @@ typedef struct panel {
 static void panel_begin(panel *p, const char *title, const char *x_label, const char *y_label)
 {
     memset(p, 0, sizeof *p);
-    p->d = mpm_draw_plot_desc_default();
-    p->d.title = title;
-    p->d.x_label = x_label;
-    p->d.y_label = y_label;
-    p->d.curves = p->curve;
+    p->d = plot_of(title, x_label, y_label, p->curve, 0);
 }
 
 static void panel_curve(panel *p, int points, const char *format, double number)
 {
     int k = p->d.curve_count++;
     snprintf(p->name[k], sizeof p->name[k], format, number);
-    p->curve[k].name = p->name[k];
-    p->curve[k].count = (size_t)points;
-    p->curve[k].x = p->x;
-    p->curve[k].y = p->y[k];
-    p->curve[k].mark = MPM_DRAW_CURVE;
-    p->curve[k].color = k;
+    p->curve[k] = plot_curve(p->name[k], p->x, p->y[k], (size_t)points, MPM_DRAW_CURVE, k);
 }
 
 /* A value over alpha, one curve per speed. */
@@ -374,17 +368,14 @@ static void panel_of_speeds(panel *p, const study *st, int value, double scale, 
     }
 }
 
-static mpm_status draw_panels(const char *path, panel *p, int count, int columns, mpm_fault *fault)
+#define PANELS 6
+
+static mpm_status draw_panels(const char *path, const panel *p, int count, mpm_fault *fault)
 {
-    mpm_draw_canvas canvas;
-    int rows = (count + columns - 1) / columns, k;
-    mpm_status status = mpm_draw_canvas_init(&canvas, 620 * columns, 420 * rows, NULL, 0);
-    for (k = 0; k < count && status >= 0; k++)
-        status = mpm_draw_plot(&canvas, mpm_draw_tile(&canvas, columns, rows, k), &p[k].d, fault);
-    if (status >= 0)
-        status = mpm_io_png(path, canvas.rgb, canvas.width, canvas.height, "examples/studies/spray_study.c", fault);
-    mpm_draw_canvas_free(&canvas);
-    return status;
+    mpm_draw_plot_desc d[PANELS];
+    int k;
+    for (k = 0; k < count; k++) d[k] = p[k].d;
+    return plots_png(path, d, count, 2, 420, program, fault);
 }
 
 static mpm_status plot_b7(const study *st, mpm_fault *fault)
@@ -396,7 +387,7 @@ static mpm_status plot_b7(const study *st, mpm_fault *fault)
     panel_of_speeds(&p[2], st, SPREAD, 1e3, "mean spread", "mm");
     panel_of_speeds(&p[3], st, SCATTER, 1e3, "scatter in spread", "mm");
     snprintf(path, sizeof path, "%s/spray_b7.png", st->data);
-    return draw_panels(path, p, 4, 2, fault);
+    return draw_panels(path, p, 4, fault);
 }
 
 static void panel_of_times(panel *p, const study *st, const char *title)
@@ -408,7 +399,7 @@ static void panel_of_times(panel *p, const study *st, const char *title)
 
 static mpm_status plot_b9(const study *st, mpm_fault *fault)
 {
-    static panel p[6];
+    static panel p[PANELS];
     char path[MPM_IO_PATH];
     int k, a, t;
     panel_of_speeds(&p[0], st, FRACTION, 1, "deposit fraction, by speed", "deposited / injected");
@@ -436,7 +427,7 @@ static mpm_status plot_b9(const study *st, mpm_fault *fault)
         panel_curve(&p[5], TIMES, "alpha %g", alphas[a]);
     }
     snprintf(path, sizeof path, "%s/spray_b9.png", st->data);
-    return draw_panels(path, p, 6, 2, fault);
+    return draw_panels(path, p, 6, fault);
 }
 
 /* The pictures of Figs. 8 and 10 need the particles: the runs are made again, short of resumable. */
@@ -465,9 +456,9 @@ static int pictures(const study *st, mpm_fault *fault)
             mpm_spray_free(&s);
         }
     snprintf(path, sizeof path, "%s/spray_b8.png", st->data);
-    bad = bad || mpm_io_png(path, plume.rgb, plume.width, plume.height, "examples/studies/spray_study.c", fault) < 0;
+    bad = bad || mpm_io_png(path, plume.rgb, plume.width, plume.height, program, fault) < 0;
     snprintf(path, sizeof path, "%s/spray_b10.png", st->data);
-    bad = bad || mpm_io_png(path, top.rgb, top.width, top.height, "examples/studies/spray_study.c", fault) < 0;
+    bad = bad || mpm_io_png(path, top.rgb, top.width, top.height, program, fault) < 0;
     mpm_draw_canvas_free(&plume);
     mpm_draw_canvas_free(&top);
     spray_columns_free(&columns);
@@ -629,50 +620,64 @@ static void report_b8_b10(FILE *f, const study *st)
         verdict(falls(st, BOTH, 7, SCATTER), 1));
 }
 
-static void report_b9(FILE *f, const study *st)
+/* What the deposit fraction at one speed gains between two alphas. */
+static double gain(const study *st, int speed, int from, int to)
 {
-    int k, a, flat = 0, fewer = 0, more = 0, steepest = 0;
-    double near_mono = 0, far_from_mono = 0;
-    for (k = 0; k < SPEEDS; k++) /* per decade: 2e3 to 2e4 against 1e5 to 1e6 */
-        flat += of(st, BOTH, k, 3, FRACTION) - of(st, BOTH, k, 0, FRACTION) >
-                2 * (of(st, BOTH, k, 7, FRACTION) - of(st, BOTH, k, 5, FRACTION));
+    return of(st, BOTH, speed, to, FRACTION) - of(st, BOTH, speed, from, FRACTION);
+}
+
+static void report_threshold(FILE *f, const study *st)
+{
+    int k, flat = 0;
+    for (k = 0; k < SPEEDS; k++) flat += gain(st, k, 0, 3) > 2 * gain(st, k, 5, 7); /* per decade */
     row(f, "B-9", "deposit fraction rises fast below the threshold alpha and flattens above",
         words("gained from 2e3 to 2e4 %.3g / %.3g / %.3g, from 1e5 to 1e6 %.3g / %.3g / %.3g at 30 / 50 / 80 m/s",
-              of(st, BOTH, 0, 3, FRACTION) - of(st, BOTH, 0, 0, FRACTION),
-              of(st, BOTH, 1, 3, FRACTION) - of(st, BOTH, 1, 0, FRACTION),
-              of(st, BOTH, 2, 3, FRACTION) - of(st, BOTH, 2, 0, FRACTION),
-              of(st, BOTH, 0, 7, FRACTION) - of(st, BOTH, 0, 5, FRACTION),
-              of(st, BOTH, 1, 7, FRACTION) - of(st, BOTH, 1, 5, FRACTION),
-              of(st, BOTH, 2, 7, FRACTION) - of(st, BOTH, 2, 5, FRACTION)),
-        verdict(flat, SPEEDS));
+              gain(st, 0, 0, 3), gain(st, 1, 0, 3), gain(st, 2, 0, 3), gain(st, 0, 5, 7), gain(st, 1, 5, 7),
+              gain(st, 2, 5, 7)), verdict(flat, SPEEDS));
+}
+
+/* By the width of the distributions of size and of release velocity. */
+static void report_widths(FILE *f, const study *st)
+{
+    int a, fewer = 0, more = 0;
+    double near_mono = 0, far_from_mono = 0;
     for (a = 0; a < ALPHAS; a++) {
         near_mono += fabs(of_shape(st, 3, a, FRACTION) - of_shape(st, 4, a, FRACTION)) / ALPHAS;
         far_from_mono += fabs(of_shape(st, 0, a, FRACTION) - of_shape(st, 3, a, FRACTION)) / ALPHAS;
         fewer += of_range(st, 2, a, FRACTION) < of_range(st, 0, a, FRACTION);
         more += of_range(st, 2, a, COLLISIONS) > of_range(st, 0, a, COLLISIONS);
-        if (a && of(st, BOTH, 1, a, RATE) - of(st, BOTH, 1, a - 1, RATE) >
-                     of(st, BOTH, 1, steepest + 1, RATE) - of(st, BOTH, 1, steepest, RATE)) steepest = a - 1;
     }
     row(f, "B-9", "narrower sizes behave more like a single size",
         words("deposit fractions of n = 1 and 5 differ by %.3g on average, those of n = 5 and 10 by %.3g; collided at "
               "alpha 1e6: %.3g %% for n = 1, %.3g %% for 5, %.3g %% for 10", far_from_mono, near_mono,
               100 * of_shape(st, 0, 7, COLLIDED), 100 * of_shape(st, 3, 7, COLLIDED),
-              100 * of_shape(st, 4, 7, COLLIDED)),
-        verdict(near_mono < far_from_mono, 1));
+              100 * of_shape(st, 4, 7, COLLIDED)), verdict(near_mono < far_from_mono, 1));
     row(f, "B-9", "more varied release velocities: more collisions, fewer deposited in a fixed time",
         words("release 25 m/s against 0 to 50 m/s: collisions per particle %.3g against %.3g at alpha 1e6 (more at "
               "%d of %d alphas), deposit fraction %.3g against %.3g (less at %d)",
               of_range(st, 0, 7, COLLISIONS), of_range(st, 2, 7, COLLISIONS), more, ALPHAS,
               of_range(st, 0, 7, FRACTION), of_range(st, 2, 7, FRACTION), fewer),
         verdict((more == ALPHAS) + (fewer == ALPHAS), 2));
+}
+
+/* What the late rate at 50 m/s gains from an alpha to the next. */
+static double rate_step(const study *st, int alpha)
+{
+    return of(st, BOTH, 1, alpha + 1, RATE) - of(st, BOTH, 1, alpha, RATE);
+}
+
+static void report_rate(FILE *f, const study *st)
+{
+    int a, steepest = 0;
+    for (a = 1; a < ALPHAS - 1; a++)
+        if (rate_step(st, a) > rate_step(st, steepest)) steepest = a;
     row(f, "B-9", "the growth rate changes most in one range of alpha, the threshold",
         words("late rate over feed at 50 m/s: %.3g, %.3g, %.3g, %.3g, %.3g, %.3g, %.3g, %.3g from 2e3 to 1e6; the "
               "largest step is from %g to %g",
               of(st, BOTH, 1, 0, RATE), of(st, BOTH, 1, 1, RATE), of(st, BOTH, 1, 2, RATE),
               of(st, BOTH, 1, 3, RATE), of(st, BOTH, 1, 4, RATE), of(st, BOTH, 1, 5, RATE), of(st, BOTH, 1, 6, RATE),
               of(st, BOTH, 1, 7, RATE), alphas[steepest], alphas[steepest + 1]),
-        verdict(of(st, BOTH, 1, steepest + 1, RATE) - of(st, BOTH, 1, steepest, RATE) >
-                    (of(st, BOTH, 1, 7, RATE) - of(st, BOTH, 1, 0, RATE)) / 4, 1));
+        verdict(rate_step(st, steepest) > (of(st, BOTH, 1, 7, RATE) - of(st, BOTH, 1, 0, RATE)) / 4, 1));
 }
 
 static int report(const study *st, const long_run *l, double once, double eightfold)
@@ -692,7 +697,9 @@ static int report(const study *st, const long_run *l, double once, double eightf
         verdict(l->m.injected == 50050 && l->inside_10mm > 0.5 && l->beyond_20mm > 0, 1));
     report_b7(f, st);
     report_b8_b10(f, st);
-    report_b9(f, st);
+    report_threshold(f, st);
+    report_widths(f, st);
+    report_rate(f, st);
     fprintf(f, "\n\"In part\" means: at half of the alphas or more, but not at every one. Pictures: "
                "[B-7](data/spray_b7.png), [B-8](data/spray_b8.png), "
                "[B-9](data/spray_b9.png), [B-10](data/spray_b10.png).\n\n");
@@ -708,31 +715,35 @@ static int report(const study *st, const long_run *l, double once, double eightf
 
 /* ---- main ---------------------------------------------------------------------------------- */
 
+/* Reads the command line: as options_parse. */
+static int options(study *st, int argc, char **argv)
+{
+    option o[5];
+    int n = 0;
+    st->budget = "full";
+    st->log = "build/spray_study.log";
+    st->data = "docs/data";
+    st->report = "docs/spray.md";
+    option_add_word(o, &n, "budget", &st->budget, "quick|full", "a look, or a quarter of an hour");
+    option_add(o, &n, "log", OPTION_TEXT, &st->log, "finished runs, to go on from");
+    option_add(o, &n, "data", OPTION_TEXT, &st->data, "folder for tables and plots");
+    option_add(o, &n, "report", OPTION_TEXT, &st->report, "the section to write");
+    option_add(o, &n, "quiet", OPTION_FLAG, &st->quiet, "no progress");
+    return options_parse(argc, argv, "Runs source B's results again and compares.", o, n);
+}
+
 int main(int argc, char **argv)
 {
-    static const char about[] = "Runs source B's results again and compares.";
     static record records[RECORDS + 1];
     study st;
     mpm_fault fault = {MPM_OK, NULL, 0, -1};
     long_run l;
     double once, eightfold;
     char text[256];
-    option o[5];
     int parsed;
     memset(&st, 0, sizeof st);
     st.records = records;
-    st.budget = "full";
-    st.log = "build/spray_study.log";
-    st.data = "docs/data";
-    st.report = "docs/spray.md";
-    o[0].name = "budget", o[0].type = OPTION_TEXT, o[0].value = &st.budget, o[0].help = "quick | full";
-    o[1].name = "log", o[1].type = OPTION_TEXT, o[1].value = &st.log, o[1].help = "finished runs, to go on from";
-    o[2].name = "data", o[2].type = OPTION_TEXT, o[2].value = &st.data, o[2].help = "folder for tables and plots";
-    o[3].name = "report", o[3].type = OPTION_TEXT, o[3].value = &st.report, o[3].help = "the section to write";
-    o[4].name = "quiet", o[4].type = OPTION_FLAG, o[4].value = &st.quiet, o[4].help = "no progress";
-    if ((parsed = options_parse(argc, argv, about, o, 5)) != 0) return parsed > 0 ? 0 : 1;
-    if (strcmp(st.budget, "quick") && strcmp(st.budget, "full"))
-        return fprintf(stderr, "error: --budget must be quick or full, not '%s'\n", st.budget), 1;
+    if ((parsed = options(&st, argc, argv)) != 0) return parsed < 0;
     st.time = st.budget[0] == 'q' ? 0.02 : 0.06;
     st.seeds = st.budget[0] == 'q' ? 1 : 3;
     st.started = time(NULL);

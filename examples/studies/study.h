@@ -5,7 +5,7 @@
 #define STUDY_H
 
 #include "impact_options.h"
-#include "mpm_draw.h"
+#include "plots.h"
 #include "program.h"
 
 #include <time.h>
@@ -34,6 +34,8 @@ static inline impact_case study_case_default(void)
     return c;
 }
 
+#define STUDY_SUBSTRATES "thesis|large"
+
 /* Source A's substrates (Table 5.3): its diameter between the listed sizes by interpolation, in proportion
    beyond them; 10 um high between 14 and 30 um, in proportion beyond. "large": 5 diameters wide, 2.5 high.
    Fills in what is 0. */
@@ -52,15 +54,15 @@ static inline void study_complete(impact_case *c, const char *substrate)
     if (!(fabs(c->time) > 0)) c->time = d > 30 ? 80 * d / 30 : 80;
 }
 
-/* The case in words: version, whether it may end early, and every option with its value. */
-static inline void study_key(const impact_case *c, int early, char *key, size_t n)
+/* The case in words: version, whether it runs to its end, and every option with its value. */
+static inline void study_key(const impact_case *c, int whole, char *key, size_t n)
 {
     impact_case copy = *c;
     option o[IMPACT_OPTIONS];
     char value[64];
     int k, count = impact_options(&copy, o);
     size_t at = (size_t)snprintf(key, n, "mpm %s, %d digits, %s", MPM_VERSION, MPM_DIGITS,
-                                 early ? "early end" : "full time");
+                                 whole ? "full time" : "early end");
     for (k = 0; k < count && at < n; k++) {
         option_text(&o[k], value, sizeof value);
         at += (size_t)snprintf(key + at, n - at, ", %s %s", o[k].name, value);
@@ -69,47 +71,45 @@ static inline void study_key(const impact_case *c, int early, char *key, size_t 
 
 /* ---- one run ------------------------------------------------------------------------------- */
 
-/* What is kept of a run. Velocities along z, relative to the substrate's mean. */
-enum {
-    STUDY_PBCP,       /* % */
-    STUDY_ABP,
-    STUDY_CONTACTED,  /* surface points */
-    STUDY_V_REST,     /* mean over the particle's points up to 60 m/s (as seen from the ground), at the end; over
-                         all where more than half of its mass is faster */
-    STUDY_V_MEAN,     /* mass-weighted mean, at the end */
-    STUDY_V_LATE,     /* the same averaged over the last eighth of the time */
-    STUDY_DRIFT,      /* the substrate's mean */
-    STUDY_HELD,       /* node pairs held by the bond in the last step */
-    STUDY_HELD_LATE,  /* share of the steps of the last eighth in which any was */
-    STUDY_FLATTENING,
-    STUDY_EPS,        /* mean plastic strain of the particle */
-    STUDY_WORK,       /* mean plastic energy density of the particle, MPa */
-    STUDY_T_MAX,      /* K */
-    STUDY_EJECTED,    /* share of the particle's mass faster than 60 m/s */
-    STUDY_RIM,        /* height of the substrate's rim over its face, of its points up to 60 m/s, um */
-    STUDY_SHEARED,    /* mass of both bodies strained beyond 3, of the particle's */
-    STUDY_R_CONTACT,  /* median distance from the axis of the particle's points with D > 0, um */
-    STUDY_R_BONDED,   /* ... with D >= 1; 0 without any */
-    STUDY_INNER,      /* share of the bonded points (by mass) in the inner half of the contact radius, which is
-                         sqrt 2 of the median distance of those with D > 0; evenly spread ones: a quarter */
-    STUDY_UNACCOUNTED, /* energy, of the initial */
-    STUDY_END,        /* ns simulated */
-    STUDY_STEPS,
-    STUDY_POINTS,
-    STUDY_CPU,        /* s */
-    STUDY_VALUES
-};
+/* What is kept of a run, as X(number, "name in tables", "meaning"). Velocities along z, relative to the substrate's
+   mean. */
+#define STUDY_LIST(X)                                                                                                 \
+    X(STUDY_PBCP, "pbcp_percent", "%")                                                                                \
+    X(STUDY_ABP, "abp", "")                                                                                           \
+    X(STUDY_CONTACTED, "contacted_points", "of the surface")                                                          \
+    X(STUDY_V_REST, "v_rest_m_s", "mean over the particle's points up to 60 m/s (as seen from the ground), at the "   \
+      "end; over all where more than half of its mass is faster")                                                     \
+    X(STUDY_V_MEAN, "v_mean_m_s", "mass-weighted mean, at the end")                                                   \
+    X(STUDY_V_LATE, "v_late_m_s", "the same averaged over the last eighth of the time")                               \
+    X(STUDY_DRIFT, "substrate_drift_m_s", "the substrate's mean")                                                     \
+    X(STUDY_HELD, "held_pairs", "node pairs held by the bond in the last step")                                       \
+    X(STUDY_HELD_LATE, "held_late_share", "of the steps of the last eighth in which any was")                         \
+    X(STUDY_FLATTENING, "flattening", "height lost by the particle, share")                                           \
+    X(STUDY_EPS, "eps_mean", "mean plastic strain of the particle")                                                   \
+    X(STUDY_WORK, "plastic_energy_density_MPa", "mean of the particle")                                               \
+    X(STUDY_T_MAX, "temperature_max_K", "")                                                                           \
+    X(STUDY_EJECTED, "ejected_mass_share", "of the particle, faster than 60 m/s")                                     \
+    X(STUDY_RIM, "rim_um", "height of the substrate's rim over its face, of its points up to 60 m/s")                 \
+    X(STUDY_SHEARED, "sheared_mass_share", "of both bodies, strained beyond 3, of the particle's mass")               \
+    X(STUDY_R_CONTACT, "contact_radius_um", "median distance from the axis of the particle's points with D > 0")      \
+    X(STUDY_R_BONDED, "bonded_radius_um", "... with D >= 1; 0 without any")                                           \
+    X(STUDY_INNER, "bonded_inner_share", "of the bonded points (by mass) in the inner half of the contact radius, "   \
+      "which is sqrt 2 of the median distance of those with D > 0; evenly spread ones: a quarter")                    \
+    X(STUDY_UNACCOUNTED, "energy_unaccounted", "of the initial")                                                      \
+    X(STUDY_END, "end_ns", "simulated")                                                                               \
+    X(STUDY_STEPS, "steps", "")                                                                                       \
+    X(STUDY_POINTS, "points", "")                                                                                     \
+    X(STUDY_CPU, "cpu_s", "")
 
-static const char *const study_name[STUDY_VALUES] = {
-    "pbcp_percent", "abp", "contacted_points", "v_rest_m_s", "v_mean_m_s", "v_late_m_s", "substrate_drift_m_s",
-    "held_pairs", "held_late_share", "flattening", "eps_mean", "plastic_energy_density_MPa", "temperature_max_K",
-    "ejected_mass_share", "rim_um", "sheared_mass_share", "contact_radius_um", "bonded_radius_um", "bonded_inner_share",
-    "energy_unaccounted", "end_ns", "steps", "points", "cpu_s"};
+#define STUDY_NUMBER(number, name, text) number,
+#define STUDY_NAME(number, name, text) name,
+enum { STUDY_LIST(STUDY_NUMBER) STUDY_VALUES };
+static const char *const study_name[STUDY_VALUES] = {STUDY_LIST(STUDY_NAME)};
 
 /* A study under way: where finished runs are kept, and what the progress line needs. */
 typedef struct study {
     const char *folder;     /* finished runs: one file each, in folder/runs */
-    int quiet, early;       /* early: end a run once the particle has left for good */
+    int quiet, whole;       /* whole: do not end a run once the particle has left for good */
     long limit;             /* new runs allowed; < 0: any number */
     long planned, done, fresh; /* runs: in all (a guess at first), finished, of these made now */
     double spent;           /* CPU seconds of the fresh ones */
@@ -122,9 +122,23 @@ static inline study study_of(const char *folder)
     study s;
     memset(&s, 0, sizeof s);
     s.folder = folder;
-    s.early = 1;
     s.limit = -1;
     return s;
+}
+
+static inline void study_options(study *s, option *o, int *n)
+{
+    option_add(o, n, "whole-time", OPTION_FLAG, &s->whole, "do not end a run early when the particle has left");
+    option_add(o, n, "limit", OPTION_LONG, &s->limit, "stop after so many new runs; < 0: never");
+    option_add(o, n, "out", OPTION_TEXT, &s->folder, "output folder");
+    option_add(o, n, "quiet", OPTION_FLAG, &s->quiet, "no progress line, no table");
+}
+
+/* The end of a program: 3 after a message when the study was stopped. */
+static inline int study_stopped(const study *s)
+{
+    printf("stopped after %ld new runs; %ld are done: run again to go on\n", s->fresh, s->done);
+    return 3;
 }
 
 /* "run 12 of 40, 14 um at 810 m/s, 35 %, left 2:10", at most once a second. */
@@ -220,73 +234,115 @@ static inline int study_leaves(const mpm_world *w)
     return r.filtered > 5 || r.ejected_mass > 0.5 * mpm_body_totals(w, IMPACT_PARTICLE).mass;
 }
 
-/* Runs a case to its end. With s->early it ends as soon as the outcome is decided: in a twentieth of
-   the time no pair was held, and the particle leaves the substrate at more than 5 m/s, all points or
-   only those up to 60 m/s, with a mean that changed by less than 1 % in that time. Returns 1, or 0
-   with a message. */
-static inline int study_run(study *s, const impact_case *c, double *value, char *message, size_t n)
+/* What is watched while a case runs: the bond, and the particle's way. */
+typedef struct study_watch {
+    long late, part;       /* steps: where the last eighth begins; a twentieth */
+    long held, held_late;  /* steps in which a pair was held: of this twentieth; of the last eighth */
+    double before;         /* the particle's velocity a twentieth ago */
+    double height, time;   /* of the particle where the last eighth begins */
+} study_watch;
+
+static inline study_watch study_watch_of(long steps)
 {
-    impact run;
-    impact_result r;
-    clock_t begun = clock();
-    long late, part, held = 0, held_late = 0;
-    double height = 0, velocity = 0, before = 0, start = 0, late_time = 0;
-    if (!impact_begin(&run, c, message, n)) return 0;
-    late = run.steps - run.steps / 8;
-    part = run.steps / 20 > 0 ? run.steps / 20 : 1;
-    while (run.world.steps < run.steps) {
-        const mpm_world *w = &run.world;
-        if (w->steps == late) {
-            study_distance(w, &start, &velocity);
-            late_time = (double)w->time;
-        }
-        if (impact_step(&run) < 0) {
-            mpm_io_fault_text(message, n, &run.world.fault);
-            mpm_free(&run.world);
-            return 0;
-        }
-        held += w->held > 0;
-        if (w->steps > late) held_late += w->held > 0;
-        if (w->steps % 64 == 0)
-            study_progress(s, (double)w->steps / (double)run.steps, (double)(clock() - begun) / (double)CLOCKS_PER_SEC);
-        if (w->steps % part) continue;
-        study_distance(w, &height, &velocity);
-        if (s->early && held == 0 && w->steps < late && velocity > 5 && fabs(velocity - before) < 0.01 * velocity &&
-            study_leaves(w))
-            break;
-        before = velocity;
-        held = 0;
+    study_watch k;
+    memset(&k, 0, sizeof k);
+    k.late = steps - steps / 8;
+    k.part = steps / 20 > 0 ? steps / 20 : 1;
+    return k;
+}
+
+/* Whether the outcome is decided, looked at after each twentieth: in it no pair was held, and the particle leaves the
+   substrate at more than 5 m/s, all points or only those up to 60 m/s, with a mean that changed by less than 1 %. */
+static inline int study_decided(study_watch *k, const mpm_world *w)
+{
+    double height, velocity;
+    int decided;
+    if (w->steps % k->part) return 0;
+    study_distance(w, &height, &velocity);
+    decided = k->held == 0 && w->steps < k->late && velocity > 5 && fabs(velocity - k->before) < 0.01 * velocity &&
+              study_leaves(w);
+    k->before = velocity;
+    k->held = 0;
+    return decided;
+}
+
+/* One step, watched. */
+static inline mpm_status study_step(study_watch *k, impact *run)
+{
+    const mpm_world *w = &run->world;
+    double velocity;
+    mpm_status status;
+    if (w->steps == k->late) {
+        study_distance(w, &k->height, &velocity);
+        k->time = (double)w->time;
     }
-    r = impact_measure(&run, c);
-    study_distance(&run.world, &height, &velocity);
+    status = impact_step(run);
+    k->held += w->held > 0;
+    if (w->steps > k->late) k->held_late += w->held > 0;
+    return status;
+}
+
+/* Mean velocity over the last eighth; the last one in a run that ended before. */
+static inline double study_late(const study_watch *k, const mpm_world *w, double last)
+{
+    double height, velocity;
+    study_distance(w, &height, &velocity);
+    return k->time > 0 && (double)w->time > k->time ? (height - k->height) / ((double)w->time - k->time) : last;
+}
+
+/* All values but the CPU time. */
+static inline void study_measure(const impact *run, const impact_case *c, const study_watch *k, double *value)
+{
+    const mpm_world *w = &run->world;
+    const impact_result r = impact_measure(run, c);
     value[STUDY_PBCP] = r.bond.pbcp;
     value[STUDY_ABP] = r.bond.abp;
     value[STUDY_CONTACTED] = (double)r.bond.contacted;
     value[STUDY_V_REST] = r.ejected_fraction > 0.5 ? r.relative : r.filtered_relative;
     value[STUDY_V_MEAN] = r.relative;
-    value[STUDY_V_LATE] = late_time > 0 && (double)run.world.time > late_time
-                              ? (height - start) / ((double)run.world.time - late_time) : value[STUDY_V_MEAN];
+    value[STUDY_V_LATE] = study_late(k, w, r.relative);
     value[STUDY_DRIFT] = r.substrate_drift;
-    value[STUDY_HELD] = (double)run.world.held;
-    value[STUDY_HELD_LATE] = run.world.steps > late ? (double)held_late / (double)(run.world.steps - late) : 0;
+    value[STUDY_HELD] = (double)w->held;
+    value[STUDY_HELD_LATE] = w->steps > k->late ? (double)k->held_late / (double)(w->steps - k->late) : 0;
     value[STUDY_FLATTENING] = r.flattening;
     value[STUDY_EPS] = r.particle.plastic_strain_mean;
     value[STUDY_WORK] = r.particle.plastic_work_mean;
     value[STUDY_T_MAX] = r.all.temperature_max;
     value[STUDY_EJECTED] = r.ejected_fraction;
-    value[STUDY_RIM] = mpm_splat_measure(&run.world, IMPACT_PARTICLE, IMPACT_SUBSTRATE, 60).rim;
-    value[STUDY_SHEARED] = study_sheared(&run.world, 3) / r.particle.mass;
-    value[STUDY_R_CONTACT] = study_median_radius(&run.world, 1e-12);
-    value[STUDY_R_BONDED] = study_median_radius(&run.world, 1);
-    value[STUDY_INNER] = case_share(study_within(&run.world, value[STUDY_R_CONTACT] / sqrt(2.0), 1),
-                                    study_within(&run.world, HUGE_VAL, 1));
+    value[STUDY_RIM] = mpm_splat_measure(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE, 60).rim;
+    value[STUDY_SHEARED] = study_sheared(w, 3) / r.particle.mass;
+    value[STUDY_R_CONTACT] = study_median_radius(w, 1e-12);
+    value[STUDY_R_BONDED] = study_median_radius(w, 1);
+    value[STUDY_INNER] = case_share(study_within(w, value[STUDY_R_CONTACT] / sqrt(2.0), 1),
+                                    study_within(w, HUGE_VAL, 1));
     value[STUDY_UNACCOUNTED] = r.energy_unaccounted;
-    value[STUDY_END] = (double)run.world.time * 1e3;
-    value[STUDY_STEPS] = (double)run.world.steps;
+    value[STUDY_END] = (double)w->time * 1e3;
+    value[STUDY_STEPS] = (double)w->steps;
     value[STUDY_POINTS] = (double)r.all.points;
-    value[STUDY_CPU] = (double)(clock() - begun) / (double)CLOCKS_PER_SEC;
+}
+
+static inline double study_seconds(clock_t since) { return (double)(clock() - since) / (double)CLOCKS_PER_SEC; }
+
+/* Runs a case to its end, or unless s->whole until its outcome is decided. Returns 1, or 0 with a message. */
+static inline int study_run(study *s, const impact_case *c, double *value, char *message, size_t n)
+{
+    const clock_t begun = clock();
+    mpm_status status = MPM_OK;
+    study_watch watch;
+    impact run;
+    if (!impact_begin(&run, c, message, n)) return 0;
+    watch = study_watch_of(run.steps);
+    while (status >= 0 && run.world.steps < run.steps) {
+        status = study_step(&watch, &run);
+        if (run.world.steps % 64 == 0)
+            study_progress(s, (double)run.world.steps / (double)run.steps, study_seconds(begun));
+        if (status >= 0 && study_decided(&watch, &run.world) && !s->whole) break;
+    }
+    if (status < 0) mpm_io_fault_text(message, n, &run.world.fault);
+    else study_measure(&run, c, &watch, value);
+    value[STUDY_CPU] = study_seconds(begun);
     mpm_free(&run.world);
-    return 1;
+    return status >= 0;
 }
 
 /* ---- finished runs ------------------------------------------------------------------------- */
@@ -299,34 +355,30 @@ static inline uint64_t study_hash(uint64_t h, const char *text)
     return h;
 }
 
+static inline const char *study_hash_text(uint64_t h, char *text, size_t n)
+{
+    snprintf(text, n, "%08lx%08lx", (unsigned long)(h >> 32), (unsigned long)(h & 0xffffffffu));
+    return text;
+}
+
 /* folder/runs/<hash of the key>.json */
 static inline void study_path(const study *s, const char *key, char *path, size_t n)
 {
-    const uint64_t h = study_hash(STUDY_HASH, key);
-    snprintf(path, n, "%s/runs/%08lx%08lx.json", s->folder, (unsigned long)(h >> 32), (unsigned long)(h & 0xffffffffu));
+    char name[20];
+    snprintf(path, n, "%s/runs/%s.json", s->folder, study_hash_text(study_hash(STUDY_HASH, key), name, sizeof name));
 }
 
 /* Reads a finished run. Returns 1 if it is there, whole and of this very case. */
 static inline int study_find(const study *s, const impact_case *c, double *value)
 {
-    char key[1200], path[MPM_IO_PATH], text[4000], quoted[80], *end;
-    size_t n;
-    FILE *f;
+    char key[1200], path[MPM_IO_PATH], text[4000], *end;
     int k;
-    study_key(c, s->early, key, sizeof key);
+    study_key(c, s->whole, key, sizeof key);
     study_path(s, key, path, sizeof path);
-    f = fopen(path, "rb");
-    if (!f) return 0;
-    n = fread(text, 1, sizeof text - 1, f);
-    fclose(f);
-    text[n] = 0;
-    if (!strstr(text, key)) return 0;
+    if (!strstr(text_in(path, text, sizeof text), key)) return 0;
     for (k = 0; k < STUDY_VALUES; k++) {
-        const char *at;
-        snprintf(quoted, sizeof quoted, "\"%s\":", study_name[k]);
-        at = strstr(text, quoted);
+        const char *at = json_value(text, study_name[k]);
         if (!at) return 0;
-        at += strlen(quoted);
         value[k] = strtod(at, &end);
         if (end == at) value[k] = NAN; /* null */
     }
@@ -339,7 +391,7 @@ static inline int study_keep(const study *s, const impact_case *c, const double 
     mpm_io_json j;
     mpm_fault fault;
     int k;
-    study_key(c, s->early, key, sizeof key);
+    study_key(c, s->whole, key, sizeof key);
     snprintf(path, sizeof path, "%s/runs", s->folder);
     if (mpm_io_make_directory(path, &fault) >= 0) {
         study_path(s, key, path, sizeof path);
@@ -365,40 +417,10 @@ static inline int study_need(study *s, const impact_case *c, double *value, char
     begun = clock();
     snprintf(s->label, sizeof s->label, "%g um at %g m/s", c->diameter, c->velocity);
     if (!study_run(s, c, value, message, n) || !study_keep(s, c, value, message, n)) return 0;
-    s->spent += (double)(clock() - begun) / (double)CLOCKS_PER_SEC;
+    s->spent += study_seconds(begun);
     s->fresh++;
     s->done++;
     return 1;
-}
-
-/* ---- plots --------------------------------------------------------------------------------- */
-
-static inline mpm_draw_curve study_line(const char *name, const mpm_real *x, const mpm_real *y, size_t count,
-                                        mpm_draw_mark mark, int color)
-{
-    mpm_draw_curve l;
-    l.name = name;
-    l.count = count;
-    l.x = x;
-    l.y = y;
-    l.mark = mark;
-    l.color = color;
-    return l;
-}
-
-/* `count` plots in one picture. */
-static inline int study_plots(const char *path, const mpm_draw_plot_desc *d, int count, int columns, const char *note,
-                              mpm_fault *fault)
-{
-    mpm_draw_canvas canvas;
-    const int rows = (count + columns - 1) / columns;
-    int k;
-    mpm_status status = mpm_draw_canvas_init(&canvas, 620 * columns, 440 * rows, NULL, 0);
-    for (k = 0; k < count && status >= 0; k++)
-        status = mpm_draw_plot(&canvas, mpm_draw_tile(&canvas, columns, rows, k), &d[k], fault);
-    if (status >= 0) status = mpm_io_png(path, canvas.rgb, canvas.width, canvas.height, note, fault);
-    mpm_draw_canvas_free(&canvas);
-    return status >= 0;
 }
 
 #endif

@@ -19,8 +19,8 @@ int main(int argc, char **argv)
     n = particles_options(&q, o);
     option_add(o, &n, "offset", OPTION_REAL, &offset, "of the second particle along x, at the start, um");
     option_add(o, &n, "height", OPTION_REAL, &height, "of its centre over the substrate, at the start, um");
-    option_add(o, &n, "leads", OPTION_TEXT, &leads,
-               "whose surface sets the (ranked) normal between the two, and is number 1 in the report: top|bottom");
+    option_add_word(o, &n, "leads", &leads, "top|bottom",
+                    "whose surface sets the (ranked) normal between the two, and is number 1 in the report");
     parsed = options_parse(argc, argv, "Two particles, one after the other, on one spot or beside it.\n"
                            "Writes particles.csv, pairs.csv, summary.json, particles.pvd (ParaView) and frames;\n"
                            "run again with the same options after an interruption, it goes on; a finished scene\n"
@@ -28,8 +28,7 @@ int main(int argc, char **argv)
     if (parsed) return parsed < 0;
     if (!particles_check(&q, message, sizeof message) ||
         !case_wants(fabs(offset) < 1e3, "offset", offset, "must be a length in um", message, sizeof message) ||
-        !case_wants(height > 0 && height < 1e4, "height", height, "must be > 0 um", message, sizeof message) ||
-        !case_knows("top|bottom", "leads", leads, message, sizeof message))
+        !case_wants(height > 0 && height < 1e4, "height", height, "must be > 0 um", message, sizeof message))
         return !complain(message);
     q.count = 2;
     top = !strcmp(leads, "top"); /* its number: the higher one leads */

@@ -10,7 +10,7 @@ typedef struct method {
     const char *name;
     mpm_basis basis;
     mpm_contact_law law;
-    int points; /* contact of points: logistic normals and separation; else of nodes */
+    int points; /* contact of points: logistic normals and touch; else of nodes */
 } method;
 
 typedef struct collision {
@@ -132,7 +132,7 @@ int main(void)
                  "Two disks (R 0.2, E 1000, nu 0.3, rho 1000) cross a unit square along its diagonal, each at 0.1\n"
                  "sqrt(2), and bounce off each other (Sulsky, Chen and Schreyer 1994; plane strain, frictionless, 2\n"
                  "x 2 points per cell). They touch at t = 1.086. Contact of nodes is the library's default, contact\n"
-                 "of points its option (normals by logistic regression, separation), one velocity field what MPM\n"
+                 "of points its option (normals by logistic regression, `touch`), one velocity field what MPM\n"
                  "does without contact. Contact begins when a thousandth of the impulse has been exchanged; energies\n"
                  "are over the first kinetic energy. No outside answer is known for the vibration that stays in the\n"
                  "disks: grids are compared.");

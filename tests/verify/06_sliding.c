@@ -186,7 +186,8 @@ static impact hertz(ground on, int n, double v)
     }
     weight = mpm_body_totals(&w, 0).mass;
     start = mean_velocity(&w, 0, 2);
-    while ((double)w.time < 1.5 * cell / v + 1.3 * 2.943 * depth / v && last < MOMENTS && mpm_step(&w, (mpm_real)dt) >= 0)
+    while ((double)w.time < 1.5 * cell / v + 1.3 * 2.943 * depth / v && last < MOMENTS &&
+           mpm_step(&w, (mpm_real)dt) >= 0)
         history[last++] = mean_velocity(&w, 0, 2) - start;
     if (last == 0) history[last++] = NAN; /* it failed: so do the rows */
     for (i = 0; i < last; i++) {
@@ -231,7 +232,7 @@ int main(void)
                  "An elastic block (2 x 1, ten cells high), disk or ball (R 0.5) on a plane inclined by 30 degrees,\n"
                  "GIMP; the grid follows the plane, gravity leans and rises over 0.3 s so that the elastic body does\n"
                  "not start to bounce. The ground is a rigid wall (a side of the grid) or an elastic slab, met\n"
-                 "through contact of nodes (the default) or of points (logistic normals, separation). Rigid bodies\n"
+                 "through contact of nodes (the default) or of points (logistic normals, `touch`). Rigid bodies\n"
                  "accelerate by g (sin a - mu cos a), or by 2/3 (disk) and 5/7 (ball) of g sin a while friction\n"
                  "suffices. Then two elastic spheres, or one and a rigid wall, collide slowly, axisymmetric: with d\n"
                  "= (15 m* v^2 / (16 sqrt(R) E*))^(2/5) Hertz has them touch for 2.943 d / v. The duration is\n"

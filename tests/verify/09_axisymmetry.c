@@ -47,7 +47,8 @@ int main(void)
     verify_begin("Axisymmetry against 3D",
                  "14 um at 810 m/s without bonding, cell 1.5 um, spacing 0.5 um, 80 ns, substrate 30 x 10 um; means "
                  "over four heights of the grid planes, which scatter by themselves (see the section on the position "
-                 "of the grid). Restitution: mean rebound velocity relative to the substrate over the impact velocity.");
+                 "of the grid). Restitution: mean rebound velocity relative to the substrate over the impact "
+                 "velocity.");
     for (f = 0; f < 2; f++) {
         impact_case c = impact_case_default();
         c.bond = "none";
@@ -65,9 +66,9 @@ int main(void)
         snprintf(line, sizeof line, "spread of the restitution over the four, axisymmetric, %s", functions[f]);
         verify_measured(line, "highest less lowest", spread[1][RESTITUTION]);
     }
-    verify_remark("Rebound takes 0.3 % of the impact's energy: a per mille of it more or less moves the restitution by a sixth. "
-                  "In axisymmetry a ring meets a grid plane all at once, in 3D its points one by one: so the restitution "
-                  "scatters far more over grid positions in axisymmetry (measured above), and a difference of means within "
-                  "that spread cannot be told from none.");
+    verify_remark("Rebound takes 0.3 % of the impact's energy: a per mille of it more or less moves the restitution "
+                  "by a sixth. In axisymmetry a ring meets a grid plane all at once, in 3D its points one by one: so "
+                  "the restitution scatters far more over grid positions in axisymmetry (measured above), and a "
+                  "difference of means within that spread cannot be told from none.");
     return verify_end();
 }

@@ -123,8 +123,8 @@ static int calibration_row(work *w, mpm_io_csv *t, grid g, const char *rule_name
 static void say_sum(work *w, const char *rule_name, const calibration_sum *sum, int grids)
 {
     int k, column;
-    say(w, "Rule \"%s\": the boundaries of the two sizes cross on %d of %d grids; over the grids the edge of 14 um lies "
-           "at", rule_name, sum->crossed, grids);
+    say(w, "Rule \"%s\": the boundaries of the two sizes cross on %d of %d grids; over the grids the edge of 14 um "
+           "lies at", rule_name, sum->crossed, grids);
     for (k = 0; k < 2; k++) {
         say(w, k ? ", that of 30 um at" : "");
         for (column = 0; column < INNER; column++)

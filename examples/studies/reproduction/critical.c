@@ -131,7 +131,7 @@ static void critical_point(critical_line *l, double x, double v)
 
 static mpm_draw_curve critical_curve_of(const critical_line *l, mpm_draw_mark mark, int color)
 {
-    return study_line(l->name, l->x, l->y, l->count, mark, color);
+    return plot_curve(l->name, l->x, l->y, l->count, mark, color);
 }
 
 /* Critical velocity over the position of the grid, by size, as a file. */
@@ -155,14 +155,10 @@ static int position_table(work *w, const critical_line *size)
 static int position_plot(work *w, const critical_line *size)
 {
     mpm_draw_curve line[SIZES];
-    mpm_draw_plot_desc d = mpm_draw_plot_desc_default();
+    const mpm_draw_plot_desc d = plot_of("critical velocity over the position of the grid",
+                                         "height of a grid plane over the interface, cells", "m/s", line, SIZES);
     int k;
     for (k = 0; k < SIZES; k++) line[k] = critical_curve_of(&size[k], MPM_DRAW_CURVE, k);
-    d.curves = line;
-    d.curve_count = SIZES;
-    d.title = "critical velocity over the position of the grid";
-    d.x_label = "height of a grid plane over the interface, cells";
-    d.y_label = "m/s";
     return picture(w, "position.png", &d);
 }
 
@@ -172,7 +168,8 @@ static int critical_plot(work *w, const critical_line *ours, int count)
     static const mpm_real two_sizes[2] = {14, 30}, measured[2] = {810, 770};
     mpm_real x[SIZES], said[SIZES];
     mpm_draw_curve line[SETTINGS + 3];
-    mpm_draw_plot_desc d = mpm_draw_plot_desc_default();
+    mpm_draw_plot_desc d = plot_of("critical velocity, rule of source A, median over grid positions",
+                                   "particle diameter, um", "m/s", line, count + 2);
     int k;
     for (k = 0; k < SIZES; k++) {
         x[k] = (mpm_real)sizes[k];
@@ -180,15 +177,10 @@ static int critical_plot(work *w, const critical_line *ours, int count)
     }
     for (k = 0; k < count; k++)
         line[k] = critical_curve_of(&ours[k], ours[k].count > 1 ? MPM_DRAW_CURVE : MPM_DRAW_DOTS, k);
-    line[count] = study_line("source A", x, said, SIZES, MPM_DRAW_DASHED, count);
-    line[count + 1] = study_line("experiment", two_sizes, measured, 2, MPM_DRAW_DOTS, count + 1);
-    d.curves = line;
-    d.curve_count = count + 2;
-    d.title = "critical velocity, rule of source A, median over grid positions";
+    line[count] = plot_curve("source A", x, said, SIZES, MPM_DRAW_DASHED, count);
+    line[count + 1] = plot_curve("experiment", two_sizes, measured, 2, MPM_DRAW_DOTS, count + 1);
     d.window[2] = 500; /* with room for the legend */
     d.window[3] = 1150;
-    d.x_label = "particle diameter, um";
-    d.y_label = "m/s";
     return picture(w, "critical_velocity.png", &d);
 }
 

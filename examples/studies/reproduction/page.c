@@ -92,5 +92,5 @@ int table_end(work *w, mpm_io_csv *t, int status)
 int picture(work *w, const char *name, const mpm_draw_plot_desc *d)
 {
     char path[MPM_IO_PATH];
-    return study_plots(data_file(w, name, path, sizeof path), d, 1, 1, "A-crit", &w->fault) || failed(w);
+    return plots_png(data_file(w, name, path, sizeof path), d, 1, 1, 440, "A-crit", &w->fault) >= 0 || failed(w);
 }

@@ -83,12 +83,12 @@ static int positions(work *w, int where_points_touch)
     impact_case c = case_on(budget_grid(w));
     int k, status;
     range.high = 1200;
-    c.separation = where_points_touch;
+    c.touch = where_points_touch;
     study_complete(&c, "thesis");
     plan(w, 1, 2 * POSITIONS + POSITIONS * critical_cost(&range));
     status = critical_repeat(w, c, VARY_GRID, "thesis", range, POSITIONS, &out);
     if (status <= 0) return status;
-    w->s.early = 0;
+    w->s.whole = 1;
     say(w, "%s\n\n| grid plane over the interface, um | rebound without bond, m/s | mean D | PBCP, %% | rebound, m/s | "
            "critical velocity, m/s | after %g ns: gap, um | mean D of the particle |\n"
            "|---|---|---|---|---|---|---|---|\n", where_points_touch
@@ -133,7 +133,7 @@ static impact_case choice_case(const work *w, const choice *k)
     c.functions = k->functions;
     c.normal = k->normal;
     c.bond_average = k->average;
-    c.separation = k->where_points_touch;
+    c.touch = k->where_points_touch;
     c.bond_width = k->width;
     c.friction = k->friction;
     study_complete(&c, k->substrate);

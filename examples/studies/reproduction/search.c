@@ -36,7 +36,7 @@ critical_range budget_range(const work *w)
 
 void plan(work *w, int early, long runs)
 {
-    w->s.early = early;
+    w->s.whole = !early;
     w->s.planned = w->s.done + runs;
 }
 

@@ -78,7 +78,7 @@ static int touch_row(work *w, double diameter, const char *rule_name, int times)
     c.diameter = diameter;
     c.functions = "gimp";
     c.normal = "logistic";
-    c.separation = 1;
+    c.touch = 1;
     c.gdot = 1.35e5;
     if ((status = critical_repeat(w, c, VARY_GRID, rule_name, range, times, &out)) <= 0) return status;
     say(w, "| %g | %s | %d | ", diameter, rule_name, times);

@@ -32,9 +32,25 @@
            return mpm_io_vtu("out/two.vtu", &d, &fault) < 0;
        }
 
+   A FORMAT OF YOUR OWN
+     is made of the same routines as those here, and needs no change to this file:
+       mpm_status write_xyz(const char *path, const mpm_points *p, mpm_fault *fault) {
+           mpm_io_file f;
+           mpm_status s = mpm_io_open(&f, path, fault);
+           int32_t i;
+           int a;
+           for (i = 0; i < p->count; i++)
+               for (a = 0; a < 3; a++) {
+                   mpm_io_put_real(&f, p->x[a][i]);
+                   mpm_io_put(&f, a < 2 ? " " : "\n");
+               }
+           return s < 0 ? s : mpm_io_close(&f, fault);
+       }
+
    CONTENTS
-     messages      mpm_io_fault_text, mpm_io_number_text, mpm_io_progress_text
-     folders       mpm_io_make_directory
+     messages      mpm_io_fault_text, _number_text, _decimal_point, _progress_text
+     files         mpm_io_make_directory, mpm_io_open, _put, _put_bytes, _put_number, _put_real,
+                   _put_integer, _close, _drop
      text files    mpm_io_json_*, mpm_io_csv_*
      ParaView      mpm_io_scalar .. mpm_io_int32, mpm_io_vtu, mpm_io_body_numbers, mpm_io_pvd_begin, mpm_io_pvd_add
      restart       mpm_io_checkpoint_write, mpm_io_checkpoint_read, mpm_io_world_blobs
@@ -62,6 +78,15 @@
 #define mpm_io_number_text mpm_io_number_text_f32
 #define mpm_io_progress_text mpm_io_progress_text_f32
 #define mpm_io_make_directory mpm_io_make_directory_f32
+#define mpm_io_decimal_point mpm_io_decimal_point_f32
+#define mpm_io_open mpm_io_open_f32
+#define mpm_io_put mpm_io_put_f32
+#define mpm_io_put_bytes mpm_io_put_bytes_f32
+#define mpm_io_put_number mpm_io_put_number_f32
+#define mpm_io_put_real mpm_io_put_real_f32
+#define mpm_io_put_integer mpm_io_put_integer_f32
+#define mpm_io_close mpm_io_close_f32
+#define mpm_io_drop mpm_io_drop_f32
 #define mpm_io_json_begin mpm_io_json_begin_f32
 #define mpm_io_json_number mpm_io_json_number_f32
 #define mpm_io_json_real mpm_io_json_real_f32
@@ -115,6 +140,10 @@ MPM_API size_t mpm_io_fault_text(char *buffer, size_t n, const mpm_fault *fault)
    "-inf". Returns the length written. Test: 40_io.c "numbers". */
 MPM_API size_t mpm_io_number_text(char *buffer, size_t n, double value);
 
+/* Puts a point where printf put the decimal separator of the locale, whatever its bytes: between the
+   digits of a printed number there is nothing else. Test: 40_io.c "numbers". */
+MPM_API void mpm_io_decimal_point(char *text);
+
 /* Where a run stands. Counts are of this run: after a restart set first_step. */
 typedef struct mpm_io_progress {
     long step, first_step, steps; /* steps done, done before this run, and planned in all */
@@ -129,18 +158,35 @@ typedef struct mpm_io_progress {
    Test: 40_io.c "messages". */
 MPM_API size_t mpm_io_progress_text(char *buffer, size_t n, const mpm_io_progress *p);
 
-/* ---- folders ------------------------------------------------------------------------------- */
+/* ---- folders and files --------------------------------------------------------------------- */
 
 /* Makes the folder `path` and every missing folder above it. One that exists is fine.
    Returns MPM_ERR_FILE when it cannot be made (or a file is in its place), MPM_ERR_ARGUMENT for an
    empty or too long path. `fault` may be NULL here and below. Test: 40_io.c "folders". */
 MPM_API mpm_status mpm_io_make_directory(const char *path, mpm_fault *fault);
 
-/* A file being written: private to the routines below, here because they are held by value. */
+/* A file being written: what all formats below are made of, and yours. */
 typedef struct mpm_io_file {
-    FILE *stream;           /* NULL once something failed */
-    char path[MPM_IO_PATH]; /* the final name; the stream writes to <path>.part */
+    FILE *stream;           /* of <path>.part; NULL if it could not be opened */
+    char path[MPM_IO_PATH]; /* the final name */
 } mpm_io_file;
+
+/* Begins a file. MPM_ERR_FILE: it cannot be made; MPM_ERR_ARGUMENT: no path, or one too long.
+   Test: 40_io.c "failures", "format". */
+MPM_API mpm_status mpm_io_open(mpm_io_file *f, const char *path, mpm_fault *fault);
+/* Adds text, bytes, a number of double precision, an mpm_real or a whole number to it, numbers with
+   the fewest digits that bring them back; nothing happens if the file is not open. No checking is
+   needed in between: an error sticks, and mpm_io_close finds it. */
+MPM_API void mpm_io_put(mpm_io_file *f, const char *text);
+MPM_API void mpm_io_put_bytes(mpm_io_file *f, const void *data, size_t n);
+MPM_API void mpm_io_put_number(mpm_io_file *f, double value);
+MPM_API void mpm_io_put_real(mpm_io_file *f, mpm_real value);
+MPM_API void mpm_io_put_integer(mpm_io_file *f, long long value);
+/* Gives the file its name. MPM_ERR_FILE when it is not open or any write failed: then nothing of it
+   is left, and a file that had the name before is as it was. */
+MPM_API mpm_status mpm_io_close(mpm_io_file *f, mpm_fault *fault);
+/* Instead of close: gives the file up. */
+MPM_API void mpm_io_drop(mpm_io_file *f);
 
 /* ---- JSON ---------------------------------------------------------------------------------- */
 
@@ -323,9 +369,7 @@ extern "C" {
 
 /* ---- messages ------------------------------------------------------------------------------ */
 
-/* Puts a point where the locale put its decimal separator, whatever its bytes: between the digits
-   of a printed number there is nothing else. */
-static inline void mpm__io_decimal_point(char *text)
+MPM_API void mpm_io_decimal_point(char *text)
 {
     char *from = text;
     size_t length;
@@ -349,7 +393,7 @@ static inline size_t mpm__io_print(char *buffer, size_t n, double value, int mos
         back = strtod(text, NULL); /* same locale as snprintf */
         if (single ? (float)back == (float)value : back >= value && back <= value) break;
     }
-    mpm__io_decimal_point(text);
+    mpm_io_decimal_point(text);
     return mpm_append(buffer, n, 0, text);
 }
 
@@ -369,7 +413,7 @@ static inline void mpm__io_short(char *buffer, size_t n, double value, int digit
 {
     char text[64], *e;
     snprintf(text, sizeof text, "%.*g", digits, value);
-    if (value - value == 0) mpm__io_decimal_point(text);
+    if (value - value == 0) mpm_io_decimal_point(text);
     e = strchr(text, 'e');
     if (e && value - value == 0) {
         long power = strtol(e + 1, NULL, 10);
@@ -455,7 +499,7 @@ static inline void mpm__io_part_name(char part[MPM_IO_PATH + 8], const char *pat
     mpm_append(part, MPM_IO_PATH + 8, used, ".part");
 }
 
-static inline mpm_status mpm__io_open(mpm_io_file *f, const char *path, mpm_fault *fault)
+MPM_API mpm_status mpm_io_open(mpm_io_file *f, const char *path, mpm_fault *fault)
 {
     char part[MPM_IO_PATH + 8];
     size_t length = path ? strlen(path) : 0;
@@ -469,8 +513,7 @@ static inline mpm_status mpm__io_open(mpm_io_file *f, const char *path, mpm_faul
     return f->stream ? MPM_OK : mpm_fail(fault, MPM_ERR_FILE, "path: cannot be made", 0, -1);
 }
 
-/* Closes the file and, if `keep` and every write went well, gives it its final name. */
-static inline mpm_status mpm__io_close(mpm_io_file *f, int keep, mpm_fault *fault)
+MPM_API mpm_status mpm_io_close(mpm_io_file *f, mpm_fault *fault)
 {
     char part[MPM_IO_PATH + 8];
     int good;
@@ -480,31 +523,52 @@ static inline mpm_status mpm__io_close(mpm_io_file *f, int keep, mpm_fault *faul
     good = fclose(f->stream) == 0 && good;
     f->stream = NULL;
 #ifdef _WIN32
-    if (keep && good) remove(f->path); /* rename does not replace there */
+    if (good) remove(f->path); /* rename does not replace there */
 #endif
-    if (keep && good && rename(part, f->path) == 0) return MPM_OK;
+    if (good && rename(part, f->path) == 0) return MPM_OK;
     remove(part);
-    if (!keep) return MPM_OK;
     return mpm_fail(fault, MPM_ERR_FILE, good ? "path: cannot be renamed" : "path: writing failed", 0, -1);
 }
 
-static inline void mpm__io_put(mpm_io_file *f, const char *text)
+MPM_API void mpm_io_drop(mpm_io_file *f)
+{
+    char part[MPM_IO_PATH + 8];
+    if (!f->stream) return;
+    mpm__io_part_name(part, f->path);
+    fclose(f->stream);
+    f->stream = NULL;
+    remove(part);
+}
+
+MPM_API void mpm_io_put(mpm_io_file *f, const char *text)
 {
     if (f->stream) fputs(text, f->stream);
 }
 
-static inline void mpm__io_put_number(mpm_io_file *f, double value)
+MPM_API void mpm_io_put_bytes(mpm_io_file *f, const void *data, size_t n)
+{
+    if (f->stream && n > 0) fwrite(data, 1, n, f->stream);
+}
+
+MPM_API void mpm_io_put_number(mpm_io_file *f, double value)
 {
     char text[40];
     mpm_io_number_text(text, sizeof text, value);
-    mpm__io_put(f, text);
+    mpm_io_put(f, text);
 }
 
-static inline void mpm__io_put_integer(mpm_io_file *f, long long value)
+MPM_API void mpm_io_put_real(mpm_io_file *f, mpm_real value)
+{
+    char text[40];
+    mpm__io_print_real(text, sizeof text, value);
+    mpm_io_put(f, text);
+}
+
+MPM_API void mpm_io_put_integer(mpm_io_file *f, long long value)
 {
     char text[40];
     snprintf(text, sizeof text, "%lld", value);
-    mpm__io_put(f, text);
+    mpm_io_put(f, text);
 }
 
 /* ---- JSON ---------------------------------------------------------------------------------- */
@@ -532,10 +596,10 @@ static inline void mpm__io_json_quoted(mpm_io_json *j, const char *text)
 static inline void mpm__io_json_key(mpm_io_json *j, const char *key)
 {
     int i;
-    mpm__io_put(&j->file, j->empty ? "\n" : ",\n");
-    for (i = 0; i < j->depth; i++) mpm__io_put(&j->file, "  ");
+    mpm_io_put(&j->file, j->empty ? "\n" : ",\n");
+    for (i = 0; i < j->depth; i++) mpm_io_put(&j->file, "  ");
     mpm__io_json_quoted(j, key ? key : "");
-    mpm__io_put(&j->file, ": ");
+    mpm_io_put(&j->file, ": ");
     j->empty = 0;
 }
 
@@ -543,9 +607,9 @@ MPM_API mpm_status mpm_io_json_begin(mpm_io_json *j, const char *path, mpm_fault
 {
     j->depth = 1;
     j->empty = 1;
-    j->status = mpm__io_open(&j->file, path, fault);
+    j->status = mpm_io_open(&j->file, path, fault);
     if (j->status < 0) return j->status;
-    mpm__io_put(&j->file, "{");
+    mpm_io_put(&j->file, "{");
     mpm_io_json_string(j, "mpm_version", MPM_VERSION);
     return MPM_OK;
 }
@@ -553,41 +617,40 @@ MPM_API mpm_status mpm_io_json_begin(mpm_io_json *j, const char *path, mpm_fault
 MPM_API void mpm_io_json_number(mpm_io_json *j, const char *key, double value)
 {
     mpm__io_json_key(j, key);
-    if (value - value != 0) mpm__io_put(&j->file, "null");
-    else mpm__io_put_number(&j->file, value);
+    if (value - value != 0) mpm_io_put(&j->file, "null");
+    else mpm_io_put_number(&j->file, value);
 }
 
 MPM_API void mpm_io_json_real(mpm_io_json *j, const char *key, mpm_real value)
 {
-    char text[40];
-    mpm__io_print_real(text, sizeof text, value);
     mpm__io_json_key(j, key);
-    mpm__io_put(&j->file, value - value != 0 ? "null" : text);
+    if (value - value != 0) mpm_io_put(&j->file, "null");
+    else mpm_io_put_real(&j->file, value);
 }
 
 MPM_API void mpm_io_json_integer(mpm_io_json *j, const char *key, long long value)
 {
     mpm__io_json_key(j, key);
-    mpm__io_put_integer(&j->file, value);
+    mpm_io_put_integer(&j->file, value);
 }
 
 MPM_API void mpm_io_json_bool(mpm_io_json *j, const char *key, int value)
 {
     mpm__io_json_key(j, key);
-    mpm__io_put(&j->file, value ? "true" : "false");
+    mpm_io_put(&j->file, value ? "true" : "false");
 }
 
 MPM_API void mpm_io_json_string(mpm_io_json *j, const char *key, const char *value)
 {
     mpm__io_json_key(j, key);
     if (value) mpm__io_json_quoted(j, value);
-    else mpm__io_put(&j->file, "null");
+    else mpm_io_put(&j->file, "null");
 }
 
 MPM_API void mpm_io_json_open(mpm_io_json *j, const char *key)
 {
     mpm__io_json_key(j, key);
-    mpm__io_put(&j->file, "{");
+    mpm_io_put(&j->file, "{");
     j->empty = 1;
     if (++j->depth > 8) j->status = MPM_ERR_ARGUMENT;
 }
@@ -596,20 +659,20 @@ MPM_API void mpm_io_json_close(mpm_io_json *j)
 {
     int i;
     if (--j->depth < 1) j->status = MPM_ERR_ARGUMENT;
-    mpm__io_put(&j->file, j->empty ? "" : "\n");
-    for (i = 0; i < j->depth && !j->empty; i++) mpm__io_put(&j->file, "  ");
-    mpm__io_put(&j->file, "}");
+    mpm_io_put(&j->file, j->empty ? "" : "\n");
+    for (i = 0; i < j->depth && !j->empty; i++) mpm_io_put(&j->file, "  ");
+    mpm_io_put(&j->file, "}");
     j->empty = 0;
 }
 
 MPM_API mpm_status mpm_io_json_end(mpm_io_json *j, mpm_fault *fault)
 {
     if (j->file.stream && (j->status < 0 || j->depth != 1)) {
-        mpm__io_close(&j->file, 0, NULL);
+        mpm_io_drop(&j->file);
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "depth of json object", (mpm_real)j->depth, -1);
     }
-    mpm__io_put(&j->file, "\n}\n");
-    return mpm__io_close(&j->file, 1, fault);
+    mpm_io_put(&j->file, "\n}\n");
+    return mpm_io_close(&j->file, fault);
 }
 
 /* ---- CSV ----------------------------------------------------------------------------------- */
@@ -620,43 +683,42 @@ MPM_API mpm_status mpm_io_csv_begin(mpm_io_csv *t, const char *path, const char 
     const char *p;
     t->columns = 1;
     t->cells = 0;
-    t->status = mpm__io_open(&t->file, path, fault);
+    t->status = mpm_io_open(&t->file, path, fault);
     if (t->status < 0) return t->status;
     for (p = columns; *p; p++) t->columns += *p == ',';
     if (note) {
-        mpm__io_put(&t->file, "# mpm.h " MPM_VERSION ": ");
+        mpm_io_put(&t->file, "# mpm.h " MPM_VERSION ": ");
         for (p = note; *p; p++) fputc(*p == '\n' || *p == '\r' ? ' ' : *p, t->file.stream);
-        mpm__io_put(&t->file, "\n");
+        mpm_io_put(&t->file, "\n");
     }
-    mpm__io_put(&t->file, columns);
-    mpm__io_put(&t->file, "\n");
+    mpm_io_put(&t->file, columns);
+    mpm_io_put(&t->file, "\n");
     return MPM_OK;
 }
 
 static inline void mpm__io_csv_cell(mpm_io_csv *t, const char *text)
 {
-    mpm__io_put(&t->file, text);
+    mpm_io_put(&t->file, text);
     t->cells = (t->cells + 1) % t->columns;
-    mpm__io_put(&t->file, t->cells == 0 ? "\n" : ",");
+    mpm_io_put(&t->file, t->cells == 0 ? "\n" : ",");
 }
 
 MPM_API void mpm_io_csv_real(mpm_io_csv *t, mpm_real value)
 {
-    char text[40];
-    mpm__io_print_real(text, sizeof text, value);
-    mpm__io_csv_cell(t, text);
+    mpm_io_put_real(&t->file, value);
+    mpm__io_csv_cell(t, "");
 }
 
 MPM_API void mpm_io_csv_integer(mpm_io_csv *t, long long value)
 {
-    mpm__io_put_integer(&t->file, value);
+    mpm_io_put_integer(&t->file, value);
     mpm__io_csv_cell(t, "");
 }
 
 MPM_API void mpm_io_csv_text(mpm_io_csv *t, const char *value)
 {
     int quote = strpbrk(value, ",\"\r\n") != NULL;
-    if (quote) mpm__io_put(&t->file, "\"");
+    if (quote) mpm_io_put(&t->file, "\"");
     for (; *value && t->file.stream; value++) {
         if (*value == '"') fputc('"', t->file.stream);
         fputc(*value, t->file.stream);
@@ -673,13 +735,13 @@ MPM_API void mpm_io_csv_row(mpm_io_csv *t, const mpm_real *values)
 MPM_API mpm_status mpm_io_csv_end(mpm_io_csv *t, mpm_fault *fault)
 {
     if (t->file.stream && t->cells != 0) {
-        mpm__io_close(&t->file, 0, NULL);
+        mpm_io_drop(&t->file);
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "cells in the last row", (mpm_real)t->cells, -1);
     }
-    return mpm__io_close(&t->file, 1, fault);
+    return mpm_io_close(&t->file, fault);
 }
 
-MPM_API void mpm_io_csv_drop(mpm_io_csv *t) { mpm__io_close(&t->file, 0, NULL); }
+MPM_API void mpm_io_csv_drop(mpm_io_csv *t) { mpm_io_drop(&t->file); }
 
 /* ---- ParaView ------------------------------------------------------------------------------ */
 
@@ -751,12 +813,12 @@ static inline void mpm__io_put_xml(mpm_io_file *f, const char *text)
 {
     for (; *text && f->stream; text++) {
         switch (*text) {
-        case '&': mpm__io_put(f, "&amp;"); break;
-        case '<': mpm__io_put(f, "&lt;"); break;
-        case '>': mpm__io_put(f, "&gt;"); break;
-        case '"': mpm__io_put(f, "&quot;"); break;
-        case '\'': mpm__io_put(f, "&apos;"); break;
-        case '-': mpm__io_put(f, text[1] == '-' ? "- " : "-"); break;
+        case '&': mpm_io_put(f, "&amp;"); break;
+        case '<': mpm_io_put(f, "&lt;"); break;
+        case '>': mpm_io_put(f, "&gt;"); break;
+        case '"': mpm_io_put(f, "&quot;"); break;
+        case '\'': mpm_io_put(f, "&apos;"); break;
+        case '-': mpm_io_put(f, text[1] == '-' ? "- " : "-"); break;
         default: fputc(*text, f->stream);
         }
     }
@@ -768,8 +830,8 @@ static inline void mpm__io_put_real(mpm_io_file *f, mpm_real value, double scale
     float single;
     if (scale < 1 || scale > 1) value = (mpm_real)((double)value * scale);
     single = (float)value;
-    if (float32) fwrite(&single, sizeof single, 1, f->stream);
-    else fwrite(&value, sizeof value, 1, f->stream);
+    if (float32) mpm_io_put_bytes(f, &single, sizeof single);
+    else mpm_io_put_bytes(f, &value, sizeof value);
 }
 
 /* The length in bytes of a field's values. */
@@ -785,8 +847,8 @@ static inline void mpm__io_field_values(mpm_io_file *file, const mpm_io_field *f
     static const int order[9] = {0, 1, 2, 5, 3, 4, 6, 7, 8}; /* xy before yz and xz */
     size_t p;
     int k;
-    if (f->bytes) fwrite(f->bytes, 1, count, file->stream);
-    else if (f->integers) fwrite(f->integers, 4, count, file->stream);
+    if (f->bytes) mpm_io_put_bytes(file, f->bytes, count);
+    else if (f->integers) mpm_io_put_bytes(file, f->integers, 4 * count);
     else
         for (p = 0; p < count; p++)
             for (k = 0; k < f->components; k++) {
@@ -800,15 +862,15 @@ static inline void mpm__io_field_values(mpm_io_file *file, const mpm_io_field *f
 static inline void mpm__io_data_tag(mpm_io_file *f, const char *type, const char *name,
                                     int components, uint64_t bytes, uint64_t *offset)
 {
-    mpm__io_put(f, "        <DataArray type=\"");
-    mpm__io_put(f, type);
-    mpm__io_put(f, "\" Name=\"");
+    mpm_io_put(f, "        <DataArray type=\"");
+    mpm_io_put(f, type);
+    mpm_io_put(f, "\" Name=\"");
     mpm__io_put_xml(f, name);
-    mpm__io_put(f, "\" NumberOfComponents=\"");
-    mpm__io_put_integer(f, components);
-    mpm__io_put(f, "\" format=\"appended\" offset=\"");
-    mpm__io_put_integer(f, (long long)*offset);
-    mpm__io_put(f, "\"/>\n");
+    mpm_io_put(f, "\" NumberOfComponents=\"");
+    mpm_io_put_integer(f, components);
+    mpm_io_put(f, "\" format=\"appended\" offset=\"");
+    mpm_io_put_integer(f, (long long)*offset);
+    mpm_io_put(f, "\"/>\n");
     *offset += 8 + bytes;
 }
 
@@ -846,31 +908,31 @@ static inline void mpm__io_vtu_head(mpm_io_file *f, const mpm_io_vtu_desc *d, si
     const char *type = real == 4 ? "Float32" : "Float64";
     uint64_t n = d->count, offset = 0;
     int i;
-    mpm__io_put(f, "<?xml version=\"1.0\"?>\n<!-- mpm.h " MPM_VERSION " ");
+    mpm_io_put(f, "<?xml version=\"1.0\"?>\n<!-- mpm.h " MPM_VERSION " ");
     if (d->note) mpm__io_put_xml(f, d->note);
-    mpm__io_put(f, " -->\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"");
-    mpm__io_put(f, mpm__io_little_endian() ? "LittleEndian" : "BigEndian");
-    mpm__io_put(f, "\" header_type=\"UInt64\">\n  <UnstructuredGrid>\n    <FieldData>\n"
+    mpm_io_put(f, " -->\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"");
+    mpm_io_put(f, mpm__io_little_endian() ? "LittleEndian" : "BigEndian");
+    mpm_io_put(f, "\" header_type=\"UInt64\">\n  <UnstructuredGrid>\n    <FieldData>\n"
                    "      <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\""
                    " format=\"ascii\">");
-    mpm__io_put_number(f, d->time);
-    mpm__io_put(f, "</DataArray>\n    </FieldData>\n    <Piece NumberOfPoints=\"");
-    mpm__io_put_integer(f, (long long)n);
-    mpm__io_put(f, "\" NumberOfCells=\"");
-    mpm__io_put_integer(f, (long long)n);
-    mpm__io_put(f, "\">\n      <Points>\n");
+    mpm_io_put_number(f, d->time);
+    mpm_io_put(f, "</DataArray>\n    </FieldData>\n    <Piece NumberOfPoints=\"");
+    mpm_io_put_integer(f, (long long)n);
+    mpm_io_put(f, "\" NumberOfCells=\"");
+    mpm_io_put_integer(f, (long long)n);
+    mpm_io_put(f, "\">\n      <Points>\n");
     mpm__io_data_tag(f, type, "Points", 3, 3 * n * real, &offset);
-    mpm__io_put(f, "      </Points>\n      <Cells>\n");
+    mpm_io_put(f, "      </Points>\n      <Cells>\n");
     mpm__io_data_tag(f, "Int32", "connectivity", 1, 4 * n, &offset);
     mpm__io_data_tag(f, "Int32", "offsets", 1, 4 * n, &offset);
     mpm__io_data_tag(f, "UInt8", "types", 1, n, &offset);
-    mpm__io_put(f, "      </Cells>\n      <PointData>\n");
+    mpm_io_put(f, "      </Cells>\n      <PointData>\n");
     for (i = 0; i < d->field_count; i++) {
         const mpm_io_field *a = &d->fields[i];
         mpm__io_data_tag(f, a->bytes ? "UInt8" : a->integers ? "Int32" : type, a->name,
                          a->components, mpm__io_field_bytes(a, d->count, real), &offset);
     }
-    mpm__io_put(f, "      </PointData>\n    </Piece>\n  </UnstructuredGrid>\n"
+    mpm_io_put(f, "      </PointData>\n    </Piece>\n  </UnstructuredGrid>\n"
                    "  <AppendedData encoding=\"raw\">\n_");
 }
 
@@ -881,22 +943,22 @@ static inline void mpm__io_vtu_body(mpm_io_file *f, const mpm_io_vtu_desc *d, si
     uint64_t bytes = mpm__io_field_bytes(&points, d->count, real);
     int32_t i, n = (int32_t)d->count;
     int k;
-    fwrite(&bytes, 8, 1, f->stream);
+    mpm_io_put_bytes(f, &bytes, sizeof bytes);
     mpm__io_field_values(f, &points, d->count, d->float32);
     for (k = 0; k < 2; k++) { /* connectivity 0 .. n - 1, then offsets 1 .. n */
         bytes = 4 * (uint64_t)d->count;
-        fwrite(&bytes, 8, 1, f->stream);
+        mpm_io_put_bytes(f, &bytes, sizeof bytes);
         for (i = 0; i < n; i++) {
             int32_t number = i + k;
-            fwrite(&number, 4, 1, f->stream);
+            mpm_io_put_bytes(f, &number, sizeof number);
         }
     }
     bytes = d->count;
-    fwrite(&bytes, 8, 1, f->stream);
+    mpm_io_put_bytes(f, &bytes, sizeof bytes);
     for (i = 0; i < n; i++) fputc(1, f->stream); /* VTK_VERTEX */
     for (k = 0; k < d->field_count; k++) {
         bytes = mpm__io_field_bytes(&d->fields[k], d->count, real);
-        fwrite(&bytes, 8, 1, f->stream);
+        mpm_io_put_bytes(f, &bytes, sizeof bytes);
         mpm__io_field_values(f, &d->fields[k], d->count, d->float32);
     }
 }
@@ -907,12 +969,12 @@ MPM_API mpm_status mpm_io_vtu(const char *path, const mpm_io_vtu_desc *d, mpm_fa
     size_t real = d->float32 ? sizeof(float) : sizeof(mpm_real);
     mpm_status status = mpm__io_vtu_check(d, fault);
     if (status < 0) return status;
-    status = mpm__io_open(&f, path, fault);
+    status = mpm_io_open(&f, path, fault);
     if (status < 0) return status;
     mpm__io_vtu_head(&f, d, real);
     mpm__io_vtu_body(&f, d, real);
-    mpm__io_put(&f, "\n  </AppendedData>\n</VTKFile>\n");
-    return mpm__io_close(&f, 1, fault);
+    mpm_io_put(&f, "\n  </AppendedData>\n</VTKFile>\n");
+    return mpm_io_close(&f, fault);
 }
 
 MPM_API void mpm_io_body_numbers(const mpm_world *world, int32_t *numbers)
@@ -932,10 +994,10 @@ MPM_API void mpm_io_body_numbers(const mpm_world *world, int32_t *numbers)
 MPM_API mpm_status mpm_io_pvd_begin(const char *path, mpm_fault *fault)
 {
     mpm_io_file f;
-    mpm_status status = mpm__io_open(&f, path, fault);
+    mpm_status status = mpm_io_open(&f, path, fault);
     if (status < 0) return status;
-    mpm__io_put(&f, MPM__IO_PVD_HEAD MPM__IO_PVD_TAIL);
-    return mpm__io_close(&f, 1, fault);
+    mpm_io_put(&f, MPM__IO_PVD_HEAD MPM__IO_PVD_TAIL);
+    return mpm_io_close(&f, fault);
 }
 
 /* Copies the frames of an earlier file, all but the one of the same name. Each is one line that
@@ -949,7 +1011,7 @@ static inline int mpm__io_pvd_copy(mpm_io_file *to, FILE *from, const char *endi
         if (strstr(line, "</Collection>")) return in_collection;
         if (in_collection && line[length - 1] != '\n') return 0;
         if (in_collection && (length < tail || strcmp(line + length - tail, ending) != 0))
-            mpm__io_put(to, line);
+            mpm_io_put(to, line);
         if (strstr(line, "<Collection>")) in_collection = 1;
     }
     return 0;
@@ -965,27 +1027,27 @@ MPM_API mpm_status mpm_io_pvd_add(const char *path, const char *frame, double ti
     mpm_status status;
     if (!frame || frame[0] == 0 || strlen(frame) >= MPM_IO_PATH || strpbrk(frame, "<>&\"'\n"))
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "name of frame", 0, -1);
-    status = mpm__io_open(&f, path, fault);
+    status = mpm_io_open(&f, path, fault);
     if (status < 0) return status;
     used = mpm_append(ending, sizeof ending, 0, "file=\"");
     used = mpm_append(ending, sizeof ending, used, frame);
     mpm_append(ending, sizeof ending, used, "\"/>\n");
-    mpm__io_put(&f, MPM__IO_PVD_HEAD);
+    mpm_io_put(&f, MPM__IO_PVD_HEAD);
     old = fopen(path, "rb");
     if (old) {
         int good = mpm__io_pvd_copy(&f, old, ending);
         fclose(old);
         if (!good) {
-            mpm__io_close(&f, 0, NULL);
+            mpm_io_drop(&f);
             return mpm_fail(fault, MPM_ERR_FILE, "path: not a series of ours", 0, -1);
         }
     }
-    mpm__io_put(&f, "    <DataSet timestep=\"");
-    mpm__io_put_number(&f, time);
-    mpm__io_put(&f, "\" part=\"0\" ");
-    mpm__io_put(&f, ending);
-    mpm__io_put(&f, MPM__IO_PVD_TAIL);
-    return mpm__io_close(&f, 1, fault);
+    mpm_io_put(&f, "    <DataSet timestep=\"");
+    mpm_io_put_number(&f, time);
+    mpm_io_put(&f, "\" part=\"0\" ");
+    mpm_io_put(&f, ending);
+    mpm_io_put(&f, MPM__IO_PVD_TAIL);
+    return mpm_io_close(&f, fault);
 }
 
 /* ---- checksums ----------------------------------------------------------------------------- */
@@ -1076,7 +1138,7 @@ static inline mpm_status mpm__io_blobs_check(const mpm_io_blob *blobs, int count
 /* Writes bytes and carries the checksum along. */
 static inline uint32_t mpm__io_put_summed(mpm_io_file *f, uint32_t crc, const void *data, size_t n)
 {
-    if (n > 0) fwrite(data, 1, n, f->stream);
+    mpm_io_put_bytes(f, data, n);
     return mpm__io_crc(crc, data, n);
 }
 
@@ -1089,7 +1151,7 @@ MPM_API mpm_status mpm_io_checkpoint_write(const char *path, const mpm_io_blob *
     int i;
     mpm_status status = mpm__io_blobs_check(blobs, count, fault);
     if (status < 0) return status;
-    status = mpm__io_open(&f, path, fault);
+    status = mpm_io_open(&f, path, fault);
     if (status < 0) return status;
     crc = mpm__io_put_summed(&f, 0, &stamp, sizeof stamp);
     for (i = 0; i < count; i++) {
@@ -1097,8 +1159,8 @@ MPM_API mpm_status mpm_io_checkpoint_write(const char *path, const mpm_io_blob *
         crc = mpm__io_put_summed(&f, crc, &head, sizeof head);
         crc = mpm__io_put_summed(&f, crc, blobs[i].data, blobs[i].bytes);
     }
-    fwrite(&crc, sizeof crc, 1, f.stream);
-    return mpm__io_close(&f, 1, fault);
+    mpm_io_put_bytes(&f, &crc, sizeof crc);
+    return mpm_io_close(&f, fault);
 }
 
 /* Reads n bytes past, adding them to the checksum; 0 when the file ends early. */
@@ -1234,11 +1296,11 @@ static inline void mpm__io_png_chunk(mpm_io_file *f, const char *type, const voi
 {
     unsigned char number[4];
     mpm__io_big_endian(number, (uint32_t)n);
-    fwrite(number, 1, 4, f->stream);
-    fwrite(type, 1, 4, f->stream);
-    if (n > 0) fwrite(body, 1, n, f->stream);
+    mpm_io_put_bytes(f, number, 4);
+    mpm_io_put_bytes(f, type, 4);
+    mpm_io_put_bytes(f, body, n);
     mpm__io_big_endian(number, mpm__io_crc(mpm__io_crc(0, type, 4), body, n));
-    fwrite(number, 1, 4, f->stream);
+    mpm_io_put_bytes(f, number, 4);
 }
 
 static inline void mpm__io_zip_byte(mpm__io_zip *z, unsigned value)
@@ -1550,7 +1612,7 @@ static inline void mpm__io_png_text(mpm_io_file *f, const char *keyword, const c
 static inline void mpm__io_png_body(mpm_io_file *f, mpm__io_zip *z, int width, int height, const char *note)
 {
     unsigned char header[13] = {0};
-    mpm__io_put(f, "\x89PNG\r\n\x1a\n");
+    mpm_io_put(f, "\x89PNG\r\n\x1a\n");
     mpm__io_big_endian(header, (uint32_t)width);
     mpm__io_big_endian(header + 4, (uint32_t)height);
     header[8] = 8; /* bits per sample */
@@ -1573,12 +1635,12 @@ MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "width of picture", (mpm_real)width, -1);
     if (height < 1 || height > 16384)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "height of picture", (mpm_real)height, -1);
-    status = mpm__io_open(&f, path, fault);
+    status = mpm_io_open(&f, path, fault);
     if (status < 0) return status;
     bytes = sizeof *z + ((size_t)width * 3 + 1) * (size_t)height;
     z = (mpm__io_zip *)MPM_MALLOC(bytes);
     if (!z) {
-        mpm__io_close(&f, 0, NULL);
+        mpm_io_drop(&f);
         return mpm_fail(fault, MPM_ERR_MEMORY, "bytes for picture", (mpm_real)bytes, -1);
     }
     memset(z, 0, sizeof *z);
@@ -1586,7 +1648,7 @@ MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int
     mpm__io_filter_all(pixels, width, height, (unsigned char *)(z + 1));
     mpm__io_png_body(&f, z, width, height, note);
     MPM_FREE(z);
-    return mpm__io_close(&f, 1, fault);
+    return mpm_io_close(&f, fault);
 }
 
 #ifdef __cplusplus

@@ -7,6 +7,7 @@
 
 #include "check.h"
 #include "png.h"
+#include "xyz.h"
 
 #ifdef MPM_FLOAT
 #define FOLDER "build/test-io-f32"
@@ -118,13 +119,13 @@ static void test_numbers(void)
     mpm_io_number_text(text, sizeof text, NAN);
     holds("not a number", strcmp(text, "nan") == 0);
     strcpy(text, "-1,25e-07");
-    mpm__io_decimal_point(text);
+    mpm_io_decimal_point(text);
     holds("comma to point", strcmp(text, "-1.25e-07") == 0);
     strcpy(text, "3\xd9\xab" "5");
-    mpm__io_decimal_point(text);
+    mpm_io_decimal_point(text);
     holds("separator of two bytes to point", strcmp(text, "3.5") == 0);
     strcpy(text, "12e+20");
-    mpm__io_decimal_point(text);
+    mpm_io_decimal_point(text);
     holds("no separator, no change", strcmp(text, "12e+20") == 0);
     for (i = 0; i < sizeof comma / sizeof comma[0] && point; i++)
         if (setlocale(LC_NUMERIC, comma[i])) {
@@ -201,6 +202,101 @@ static void test_failures(void)
         holds("no .part on a full disc", !exists(FOLDER "/keep.csv.part"));
     }
 #endif
+}
+
+/* ---- a world ------------------------------------------------------------------------------- */
+
+/* A linear elastic response, stress += E strain: enough to make the points interact. */
+static mpm_status elastic(const void *material, const mpm_block *b)
+{
+    mpm_real young = *(const mpm_real *)material;
+    int p, k;
+    for (k = 0; k < 6; k++)
+        for (p = 0; p < b->count; p++) b->stress[k][p] += young * b->strain[k][p];
+    return MPM_OK;
+}
+
+static mpm_real young = 1000;
+
+static mpm_status make_world(mpm_world *w)
+{
+    mpm_desc d = mpm_desc_default();
+    mpm_body_desc b = mpm_body_desc_default();
+    mpm_status status;
+    d.cell = MPM_R(0.1);
+    d.cells[0] = d.cells[1] = d.cells[2] = 12;
+    d.points = 2600;
+    d.bodies = 2;
+    status = mpm_init(w, &d, NULL, 0);
+    b.spacing = MPM_R(0.05);
+    b.density = 1;
+    b.stress = elastic;
+    b.material = &young;
+    b.shape = mpm_box(MPM_R(0.4), MPM_R(0.4), MPM_R(0.61), MPM_R(0.8), MPM_R(0.8), MPM_R(0.9));
+    b.velocity[0] = 3;
+    b.velocity[2] = -10;
+    if (status >= 0) status = mpm_body_add(w, &b);
+    b.shape = mpm_box(MPM_R(0.2), MPM_R(0.2), MPM_R(0.2), MPM_R(1.0), MPM_R(1.0), MPM_R(0.6));
+    b.velocity[0] = b.velocity[2] = 0;
+    if (status >= 0) status = mpm_body_add(w, &b);
+    return status;
+}
+
+static int run(mpm_world *w, int steps)
+{
+    while (steps-- > 0)
+        if (mpm_step(w, MPM_R(0.0005)) < 0) return 0;
+    return 1;
+}
+
+/* ---- a format of one's own ------------------------------------------------------------------- */
+
+/* Every number of a file comes back: those behind the second line of an .xyz. */
+static int xyz_differs(const char *path, const mpm_world *w)
+{
+    const mpm_points *p = &w->points;
+    size_t n;
+    char *data = (char *)slurp(path, &n), *at = data ? strchr(strchr(data, '\n') + 1, '\n') : NULL;
+    int bad = 0, a;
+    int32_t i;
+    for (i = 0; at && i < p->count; i++) {
+        const mpm_real *const column[7] = {p->x[0], p->x[1], p->x[2], p->v[0], p->v[1], p->v[2], p->temperature};
+        bad += strtol(at, &at, 10) != p->id[i];
+        for (a = 0; a < 7; a++) {
+            mpm_real got = (mpm_real)strtod(at, &at);
+            bad += memcmp(&got, &column[a][i], sizeof got) != 0;
+        }
+    }
+    bad += !at || strcmp(at, "\n") != 0;
+    free(data);
+    return bad;
+}
+
+static void test_format(void)
+{
+    const char *path = FOLDER "/points.xyz";
+    const unsigned char three[3] = {1, 0, 2};
+    mpm_io_file f;
+    mpm_world w;
+    mpm_fault fault;
+    equal("a world", make_world(&w), MPM_OK);
+    holds("... that moves", run(&w, 3));
+    equal("a format of one's own", write_xyz(path, &w, &fault), MPM_OK);
+    holds("... with its first line", contains(path, "2432\nProperties=id:I:1:pos:R:3:velo:R:3:temperature:R:1 Time=0.0015"));
+    equal("... comes back in every number", xyz_differs(path, &w), 0);
+    equal("... nowhere", write_xyz(FOLDER "/missing/file", &w, &fault), MPM_ERR_FILE);
+    mpm_free(&w);
+    equal("a file of bytes", mpm_io_open(&f, FOLDER "/bytes", &fault), MPM_OK);
+    mpm_io_put_bytes(&f, three, 3);
+    mpm_io_put_bytes(&f, NULL, 0);
+    equal("... is closed", mpm_io_close(&f, &fault), MPM_OK);
+    holds("... and holds them", slurp_holds(FOLDER "/bytes", (const char *)three, 3));
+    equal("closed again", mpm_io_close(&f, &fault), MPM_ERR_FILE);
+    equal("the same file again", mpm_io_open(&f, FOLDER "/bytes", &fault), MPM_OK);
+    mpm_io_put(&f, "other");
+    mpm_io_drop(&f);
+    mpm_io_drop(&f); /* harmless */
+    holds("... dropped: as it was", slurp_holds(FOLDER "/bytes", (const char *)three, 3) && !exists(FOLDER "/bytes.part"));
 }
 
 /* ---- JSON and CSV -------------------------------------------------------------------------- */
@@ -464,50 +560,7 @@ static void test_checkpoint(void)
     equal("no such file", mpm_io_checkpoint_read(FOLDER "/none", in, 3, &f), MPM_ERR_FILE);
 }
 
-/* ---- a world: restart --------------------------------------------------------------- */
-
-/* A linear elastic response, stress += E strain: enough to make the points interact. */
-static mpm_status elastic(const void *material, const mpm_block *b)
-{
-    mpm_real young = *(const mpm_real *)material;
-    int p, k;
-    for (k = 0; k < 6; k++)
-        for (p = 0; p < b->count; p++) b->stress[k][p] += young * b->strain[k][p];
-    return MPM_OK;
-}
-
-static mpm_real young = 1000;
-
-static mpm_status make_world(mpm_world *w)
-{
-    mpm_desc d = mpm_desc_default();
-    mpm_body_desc b = mpm_body_desc_default();
-    mpm_status status;
-    d.cell = MPM_R(0.1);
-    d.cells[0] = d.cells[1] = d.cells[2] = 12;
-    d.points = 2600;
-    d.bodies = 2;
-    status = mpm_init(w, &d, NULL, 0);
-    b.spacing = MPM_R(0.05);
-    b.density = 1;
-    b.stress = elastic;
-    b.material = &young;
-    b.shape = mpm_box(MPM_R(0.4), MPM_R(0.4), MPM_R(0.61), MPM_R(0.8), MPM_R(0.8), MPM_R(0.9));
-    b.velocity[0] = 3;
-    b.velocity[2] = -10;
-    if (status >= 0) status = mpm_body_add(w, &b);
-    b.shape = mpm_box(MPM_R(0.2), MPM_R(0.2), MPM_R(0.2), MPM_R(1.0), MPM_R(1.0), MPM_R(0.6));
-    b.velocity[0] = b.velocity[2] = 0;
-    if (status >= 0) status = mpm_body_add(w, &b);
-    return status;
-}
-
-static int run(mpm_world *w, int steps)
-{
-    while (steps-- > 0)
-        if (mpm_step(w, MPM_R(0.0005)) < 0) return 0;
-    return 1;
-}
+/* ---- restart ------------------------------------------------------------------------------- */
 
 static void test_restart(void)
 {
@@ -601,6 +654,7 @@ int main(void)
     test_numbers();
     test_folders();
     test_failures();
+    test_format();
     test_json();
     test_csv();
     test_vtu();

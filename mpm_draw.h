@@ -173,6 +173,7 @@ typedef enum mpm_draw_style { MPM_DRAW_SMOOTH = 0, MPM_DRAW_NEAREST = 1 } mpm_dr
 
 /* A cut through a set of points: those within half_thickness of a plane normal to an axis. */
 typedef struct mpm_draw_cut_desc {
+    unsigned mark;          /* set by mpm_draw_cut_desc_default */
     size_t count;           /* points */
     const mpm_real *x[3];   /* positions [length]; a NULL axis counts as zero */
     const mpm_real *value;  /* colour; NULL colours by body */
@@ -214,6 +215,7 @@ MPM_API mpm_status mpm_draw_cuts(mpm_draw_canvas *c, const mpm_draw_cut_desc *cu
 
 /* Discs in a plane, coloured by value: plumes, deposit patterns, correlations. */
 typedef struct mpm_draw_scatter_desc {
+    unsigned mark;           /* set by mpm_draw_scatter_desc_default */
     size_t count;
     const mpm_real *x, *y;
     const mpm_real *value;   /* colour; NULL: one colour */
@@ -245,6 +247,7 @@ typedef struct mpm_draw_curve {
 } mpm_draw_curve;
 
 typedef struct mpm_draw_plot_desc {
+    unsigned mark;        /* set by mpm_draw_plot_desc_default */
     const mpm_draw_curve *curves;
     int curve_count;
     double window[4];     /* xmin, xmax, ymin, ymax; a pair of zeros fits that axis */
@@ -321,25 +324,28 @@ static inline double mpm__draw_leading(double size, int digits, int *exponent)
     return mpm__draw_nearest(size, digits - 1 - *exponent);
 }
 
+/* A finite value with its significant digits, the zeros behind left out. */
+static inline void mpm__draw_general(char text[64], double value, int digits)
+{
+    const int wanted = digits, negative = value < 0;
+    int exponent;
+    double whole = mpm__draw_leading(fabs(value), digits, &exponent);
+    for (; digits > 1 && fmod(whole, 10) < 0.5; digits--) whole /= 10;
+    if (exponent < -4 || exponent >= wanted) {
+        mpm__draw_digits(text, negative, whole, digits - 1);
+        text += strlen(text);
+        *text++ = 'e';
+        mpm__draw_fixed(text, exponent, 0);
+    } else if (exponent < digits) mpm__draw_digits(text, negative, whole, digits - 1 - exponent);
+    else mpm__draw_digits(text, negative, mpm__draw_nearest(whole, exponent - digits + 1), 0);
+}
+
 MPM_API size_t mpm_draw_number(char *buffer, size_t n, double value, int digits)
 {
     char text[64];
-    int exponent, wanted = digits;
-    double size = fabs(value), whole;
-    if (value != value) return mpm_append(buffer, n, 0, "nan");
-    if (value - value != 0 && value > 0) return mpm_append(buffer, n, 0, "inf");
-    if (value - value != 0) return mpm_append(buffer, n, 0, "-inf");
-    if (!(size > 1e-290)) return mpm_append(buffer, n, 0, "0");
-    whole = mpm__draw_leading(size, digits, &exponent);
-    for (; digits > 1 && fmod(whole, 10) < 0.5; digits--) whole /= 10;
-    if (exponent < -4 || exponent >= wanted) {
-        char *end = text;
-        mpm__draw_digits(text, value < 0, whole, digits - 1);
-        while (*end) end++;
-        *end++ = 'e';
-        mpm__draw_fixed(end, exponent, 0);
-    } else if (exponent < digits) mpm__draw_digits(text, value < 0, whole, digits - 1 - exponent);
-    else mpm__draw_digits(text, value < 0, mpm__draw_nearest(whole, exponent - digits + 1), 0);
+    if (value - value != 0) strcpy(text, value != value ? "nan" : value > 0 ? "inf" : "-inf");
+    else if (fabs(value) > 1e-290) mpm__draw_general(text, value, digits);
+    else strcpy(text, "0");
     return mpm_append(buffer, n, 0, text);
 }
 
@@ -1130,6 +1136,7 @@ MPM_API mpm_draw_cut_desc mpm_draw_cut_desc_default(void)
 {
     mpm_draw_cut_desc d;
     memset(&d, 0, sizeof d);
+    d.mark = MPM_MARK;
     d.normal = 1;
     d.scale = 1;
     d.length_scale = 1;
@@ -1149,6 +1156,8 @@ MPM_API mpm_draw_cut_desc mpm_draw_cut_of(const mpm_world *world, const mpm_real
 
 static inline mpm_status mpm__draw_cut_check(const mpm_draw_cut_desc *d, mpm_fault *fault)
 {
+    if (d->mark != MPM_MARK)
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_draw_cut_desc_default)", (mpm_real)d->mark, -1);
     if (d->count < 1) return mpm_fail(fault, MPM_ERR_ARGUMENT, "count", 0, -1);
     if (!(d->spacing > 0) && !(d->world && d->spacing >= 0))
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "spacing", (mpm_real)d->spacing, -1);
@@ -1553,6 +1562,7 @@ MPM_API mpm_draw_scatter_desc mpm_draw_scatter_desc_default(void)
 {
     mpm_draw_scatter_desc d;
     memset(&d, 0, sizeof d);
+    d.mark = MPM_MARK;
     d.dot = 5;
     d.equal = 1;
     d.scale = 1;
@@ -1585,6 +1595,9 @@ MPM_API mpm_status mpm_draw_scatter(mpm_draw_canvas *c, mpm_draw_rect where, con
     mpm_draw_rect bar;
     double scale;
     size_t i, n;
+    if (d->mark != MPM_MARK)
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_draw_scatter_desc_default)",
+                        (mpm_real)d->mark, -1);
     if (d->count < 1 || !d->x || !d->y)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "points of the scatter plot", (mpm_real)d->count, -1);
     dots = (mpm__draw_dot *)MPM_MALLOC(d->count * sizeof *dots);
@@ -1627,6 +1640,7 @@ MPM_API mpm_draw_plot_desc mpm_draw_plot_desc_default(void)
 {
     mpm_draw_plot_desc d;
     memset(&d, 0, sizeof d);
+    d.mark = MPM_MARK;
     return d;
 }
 
@@ -1767,6 +1781,8 @@ MPM_API mpm_status mpm_draw_plot(mpm_draw_canvas *c, mpm_draw_rect where, const 
     mpm__draw_furniture f = {NULL, NULL, NULL, NULL, 1, 0, 0};
     mpm__draw_axes a;
     int k;
+    if (d->mark != MPM_MARK)
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_draw_plot_desc_default)", (mpm_real)d->mark, -1);
     if (!mpm__draw_plot_range(d, 0, &a) || !mpm__draw_plot_range(d, 1, &a))
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "points of the curves", 0, -1);
     f.title = d->title;

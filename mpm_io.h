@@ -53,7 +53,7 @@
                    _put_integer, _close, _drop
      text files    mpm_io_json_*, mpm_io_csv_*
      ParaView      mpm_io_scalar .. mpm_io_int32, mpm_io_vtu, mpm_io_body_numbers, mpm_io_pvd_begin, mpm_io_pvd_add
-     restart       mpm_io_checkpoint_write, mpm_io_checkpoint_read, mpm_io_world_blobs
+     restart       mpm_io_checkpoint_write, _checkpoint_read, _world_text, _line, _line_number
      pictures      mpm_io_png
 
    CONFIGURATION (define before including)
@@ -114,7 +114,9 @@
 #define mpm_io_pvd_add mpm_io_pvd_add_f32
 #define mpm_io_checkpoint_write mpm_io_checkpoint_write_f32
 #define mpm_io_checkpoint_read mpm_io_checkpoint_read_f32
-#define mpm_io_world_blobs mpm_io_world_blobs_f32
+#define mpm_io_world_text mpm_io_world_text_f32
+#define mpm_io_line mpm_io_line_f32
+#define mpm_io_line_number mpm_io_line_number_f32
 #define mpm_io_png mpm_io_png_f32
 #define mpm_io_body_numbers mpm_io_body_numbers_f32
 #endif
@@ -131,8 +133,8 @@ extern "C" {
 
 /* Writes "meaning: field = value (index 12)" into buffer[n], cut to fit and always terminated when
    n > 0. The index (a point, a body or an axis: the field's name says which) is left out when
-   negative; "= value" is left out for MPM_ERR_FILE, where the field says what of the file was
-   wrong. Returns the length written. Test: 40_io.c "messages". */
+   negative; "= value" is left out for MPM_ERR_FILE and MPM_ERR_VERSION, where the field says what
+   of the file was wrong. Returns the length written. Test: 40_io.c "messages". */
 MPM_API size_t mpm_io_fault_text(char *buffer, size_t n, const mpm_fault *fault);
 
 /* Writes `value` into buffer[n] (32 bytes always suffice) with the fewest of 15 to 17 digits that
@@ -270,6 +272,7 @@ MPM_API mpm_io_field mpm_io_int32(const char *name, const int32_t *integers);
 
 /* Points and what to write of them. */
 typedef struct mpm_io_vtu_desc {
+    unsigned mark;              /* set by mpm_io_vtu_desc_default */
     size_t count;               /* points, at most 2^31 - 1 */
     const mpm_real *x[3];       /* positions [length]; a NULL axis is written as zero */
     double scale;               /* of positions */
@@ -300,30 +303,30 @@ MPM_API mpm_status mpm_io_pvd_add(const char *path, const char *frame, double ti
 
 /* ---- checkpoints --------------------------------------------------------------------------- */
 
-/* A named stretch of memory. Its bits are stored as they are; a struct that holds pointers must not
-   be among them, or its pointers must be set again after reading. */
-typedef struct mpm_io_blob {
-    const char *name; /* shorter than 64 bytes */
-    size_t bytes;
-    void *data;       /* read from when writing, written to when reading */
-} mpm_io_blob;
+/* A checkpoint holds blobs (mpm.h) and, as lines of text, what they are of: whatever must be the same for a run
+   that goes on from them. The head of the file can be read with any viewer of text.
 
-/* Writes blobs[count] with version, real size, byte order and a CRC-32 over everything, so that a
-   restart is bitwise. Returns MPM_ERR_FILE or MPM_ERR_ARGUMENT. Test: 40_io.c "checkpoint". */
-MPM_API mpm_status mpm_io_checkpoint_write(const char *path, const mpm_io_blob *blobs, int count,
+   Writes text (NULL: none) and blob[count] with version, real size, byte order and a CRC-32 over
+   everything, so that a restart is bitwise. MPM_ERR_FILE, MPM_ERR_ARGUMENT. Test: 40_io.c "checkpoint". */
+MPM_API mpm_status mpm_io_checkpoint_write(const char *path, const char *text, const mpm_blob *blob, int count,
                                            mpm_fault *fault);
-/* Reads them back: the same names and sizes in the same order. All is verified before the first
-   blob is changed. MPM_ERR_VERSION: written by another version of mpm.h, real type or byte order;
-   MPM_ERR_FILE: missing, damaged, or holding other blobs (the fault tells which). */
-MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const mpm_io_blob *blobs, int count,
+/* Reads them back: the same names in the same order, of sizes that fit. All is verified before the first byte is
+   changed; what the numbers say is for mpm_restored, mpm_spray_restored to check.
+   MPM_ERR_VERSION: by another version of mpm.h, real type or byte order, or of another text: then fault.field is
+   the first line of yours that the file has not, fault.index its number, from 1.
+   MPM_ERR_FILE: missing, damaged, or holding other blobs (the fault tells which). Test: 40_io.c "checkpoint". */
+MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const char *text, mpm_blob *blob, int count,
                                           mpm_fault *fault);
 
-/* A whole world: fills blobs[MPM_IO_WORLD_BLOBS + world->bodies] with everything its next step
-   depends on and returns their number; append blobs of your own behind them. To restart, set the
-   world up as before - the same description, the same bodies in the same order - and read.
-   Test: 40_io.c "restart": the run goes on bit for bit. */
-#define MPM_IO_WORLD_BLOBS 12
-MPM_API int mpm_io_world_blobs(mpm_world *world, mpm_io_blob *blobs);
+/* A world's description as such a text, into buffer[n], cut to fit: grid, sides, contact rules and bodies, one
+   "name value" a line; 1500 bytes and 800 for each body suffice. Materials are known to you alone: add lines of
+   theirs, and of the time step, behind the length that is returned. Test: 40_io.c "restart". */
+MPM_API size_t mpm_io_world_text(char *buffer, size_t n, const mpm_world *world);
+
+/* Adds a line "name value" behind the `used` characters in buffer[n], cut to fit. Returns the new length.
+   Test: 40_io.c "checkpoint". */
+MPM_API size_t mpm_io_line(char *buffer, size_t n, size_t used, const char *name, const char *value);
+MPM_API size_t mpm_io_line_number(char *buffer, size_t n, size_t used, const char *name, double value);
 
 /* ---- PNG ----------------------------------------------------------------------------------- */
 
@@ -425,11 +428,12 @@ static inline void mpm__io_short(char *buffer, size_t n, double value, int digit
 MPM_API size_t mpm_io_fault_text(char *buffer, size_t n, const mpm_fault *fault)
 {
     char number[40];
-    size_t used = mpm_append(buffer, n, 0, mpm_status_text(fault->status));
+    size_t used = mpm_append(buffer, n, 0, mpm_status_text(fault->status)), room;
     if (fault->field) {
         used = mpm_append(buffer, n, used, ": ");
-        used = mpm_append(buffer, n, used, fault->field);
-        if (fault->status != MPM_ERR_FILE) {
+        room = used + strcspn(fault->field, "\n") + 1; /* a line of a text ends there */
+        used = mpm_append(buffer, room < n ? room : n, used, fault->field);
+        if (fault->status != MPM_ERR_FILE && fault->status != MPM_ERR_VERSION) {
             mpm__io_print_real(number, sizeof number, fault->value);
             used = mpm_append(buffer, n, used, " = ");
             used = mpm_append(buffer, n, used, number);
@@ -805,6 +809,7 @@ MPM_API mpm_io_vtu_desc mpm_io_vtu_desc_default(void)
     mpm_io_vtu_desc d;
     memset(&d, 0, sizeof d);
     d.scale = 1;
+    d.mark = MPM_MARK;
     return d;
 }
 
@@ -877,6 +882,8 @@ static inline void mpm__io_data_tag(mpm_io_file *f, const char *type, const char
 static inline mpm_status mpm__io_vtu_check(const mpm_io_vtu_desc *d, mpm_fault *fault)
 {
     int i, k;
+    if (d->mark != MPM_MARK)
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_io_vtu_desc_default)", (mpm_real)d->mark, -1);
     if (d->count > 2147483647u)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "count", (mpm_real)d->count, -1);
     if (d->field_count < 0 || (d->field_count > 0 && !d->fields))
@@ -1093,7 +1100,7 @@ typedef struct mpm__io_stamp {
     uint32_t size_size; /* of size_t: stored structs may hold it */
 } mpm__io_stamp;
 
-/* The head of each blob; its bytes follow. */
+/* The head of each blob and of the text before them; its bytes follow. */
 typedef struct mpm__io_blob_head {
     char name[64];
     uint64_t bytes;
@@ -1112,63 +1119,61 @@ static inline mpm__io_stamp mpm__io_stamp_make(int count)
     return s;
 }
 
-static inline mpm__io_blob_head mpm__io_blob_head_make(const mpm_io_blob *b)
+static inline mpm__io_blob_head mpm__io_blob_head_make(const char *name, size_t bytes)
 {
     mpm__io_blob_head h;
     memset(&h, 0, sizeof h);
-    mpm_append(h.name, sizeof h.name, 0, b->name);
-    h.bytes = b->bytes;
+    mpm_append(h.name, sizeof h.name, 0, name);
+    h.bytes = bytes;
     return h;
 }
 
-static inline mpm_status mpm__io_blobs_check(const mpm_io_blob *blobs, int count, mpm_fault *fault)
+static inline mpm_status mpm__io_blobs_check(const mpm_blob *blob, int count, mpm_fault *fault)
 {
     int i;
-    if (count < 0 || (count > 0 && !blobs))
+    if (count < 0 || (count > 0 && !blob))
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "count of blobs", (mpm_real)count, -1);
     for (i = 0; i < count; i++) {
-        if (!blobs[i].name || strlen(blobs[i].name) >= 64)
-            return mpm_fail(fault, MPM_ERR_ARGUMENT, "name of blob", 0, i);
-        if (!blobs[i].data && blobs[i].bytes > 0)
+        if (!blob[i].name || strlen(blob[i].name) >= 64) return mpm_fail(fault, MPM_ERR_ARGUMENT, "name of blob", 0, i);
+        if (!blob[i].data && (blob[i].bytes > 0 || blob[i].room > 0))
             return mpm_fail(fault, MPM_ERR_ARGUMENT, "data of blob", 0, i);
     }
     return MPM_OK;
 }
 
-/* Writes bytes and carries the checksum along. */
-static inline uint32_t mpm__io_put_summed(mpm_io_file *f, uint32_t crc, const void *data, size_t n)
+/* A head and its bytes; carries the checksum along. */
+static inline uint32_t mpm__io_put_blob(mpm_io_file *f, uint32_t crc, const char *name, const void *data, size_t n)
 {
+    mpm__io_blob_head head = mpm__io_blob_head_make(name, n);
+    mpm_io_put_bytes(f, &head, sizeof head);
     mpm_io_put_bytes(f, data, n);
-    return mpm__io_crc(crc, data, n);
+    return mpm__io_crc(mpm__io_crc(crc, &head, sizeof head), data, n);
 }
 
-MPM_API mpm_status mpm_io_checkpoint_write(const char *path, const mpm_io_blob *blobs, int count,
+MPM_API mpm_status mpm_io_checkpoint_write(const char *path, const char *text, const mpm_blob *blob, int count,
                                            mpm_fault *fault)
 {
     mpm_io_file f;
     mpm__io_stamp stamp = mpm__io_stamp_make(count);
-    uint32_t crc;
+    uint32_t crc = mpm__io_crc(0, &stamp, sizeof stamp);
     int i;
-    mpm_status status = mpm__io_blobs_check(blobs, count, fault);
+    mpm_status status = mpm__io_blobs_check(blob, count, fault);
     if (status < 0) return status;
     status = mpm_io_open(&f, path, fault);
     if (status < 0) return status;
-    crc = mpm__io_put_summed(&f, 0, &stamp, sizeof stamp);
-    for (i = 0; i < count; i++) {
-        mpm__io_blob_head head = mpm__io_blob_head_make(&blobs[i]);
-        crc = mpm__io_put_summed(&f, crc, &head, sizeof head);
-        crc = mpm__io_put_summed(&f, crc, blobs[i].data, blobs[i].bytes);
-    }
+    mpm_io_put_bytes(&f, &stamp, sizeof stamp);
+    crc = mpm__io_put_blob(&f, crc, "text", text ? text : "", text ? strlen(text) : 0);
+    for (i = 0; i < count; i++) crc = mpm__io_put_blob(&f, crc, blob[i].name, blob[i].data, blob[i].bytes);
     mpm_io_put_bytes(&f, &crc, sizeof crc);
     return mpm_io_close(&f, fault);
 }
 
 /* Reads n bytes past, adding them to the checksum; 0 when the file ends early. */
-static inline int mpm__io_skip_summed(FILE *in, size_t n, uint32_t *crc)
+static inline int mpm__io_skip_summed(FILE *in, uint64_t n, uint32_t *crc)
 {
     unsigned char buffer[4096];
     while (n > 0) {
-        size_t part = n < sizeof buffer ? n : sizeof buffer;
+        size_t part = n < sizeof buffer ? (size_t)n : sizeof buffer;
         if (fread(buffer, 1, part, in) != part) return 0;
         *crc = mpm__io_crc(*crc, buffer, part);
         n -= part;
@@ -1176,34 +1181,82 @@ static inline int mpm__io_skip_summed(FILE *in, size_t n, uint32_t *crc)
     return 1;
 }
 
-/* Compares stamp, names, sizes and checksum with what is asked for; changes nothing. */
-static inline mpm_status mpm__io_checkpoint_verify(FILE *in, const mpm_io_blob *blobs, int count,
+/* Compares n bytes of the file with a text. Returns the beginning of the text's first line that differs, and its
+   number; NULL if there is none. */
+static inline const char *mpm__io_text_differs(FILE *in, uint64_t n, const char *text, long *line, uint32_t *crc)
+{
+    const char *start = text, *at = text;
+    for (*line = 1; n > 0; n--) {
+        const int c = fgetc(in);
+        const unsigned char byte = (unsigned char)c;
+        if (c == EOF || *at == 0 || byte != (unsigned char)*at) return start;
+        *crc = mpm__io_crc(*crc, &byte, 1);
+        if (*at++ != '\n') continue;
+        start = at;
+        ++*line;
+    }
+    return *at ? start : NULL;
+}
+
+/* The stamp: who wrote the file. */
+static inline mpm_status mpm__io_stamp_verify(const mpm__io_stamp *found, const mpm__io_stamp *mine, mpm_fault *fault)
+{
+    if (memcmp(found->magic, mine->magic, 16) != 0)
+        return mpm_fail(fault, MPM_ERR_FILE, "path: not a checkpoint", 0, -1);
+    if (memcmp(found->version, mine->version, 16) != 0)
+        return mpm_fail(fault, MPM_ERR_VERSION, "version of checkpoint", 0, -1);
+    if (found->order != mine->order) return mpm_fail(fault, MPM_ERR_VERSION, "byte order of checkpoint", 0, -1);
+    if (found->real_size != mine->real_size)
+        return mpm_fail(fault, MPM_ERR_VERSION, "real size of checkpoint", (mpm_real)found->real_size, -1);
+    if (found->size_size != mine->size_size)
+        return mpm_fail(fault, MPM_ERR_VERSION, "word size of checkpoint", (mpm_real)found->size_size, -1);
+    return MPM_OK;
+}
+
+/* The text behind the stamp: what the file is of. */
+static inline mpm_status mpm__io_text_verify(FILE *in, const char *text, uint32_t *crc, mpm_fault *fault)
+{
+    mpm__io_blob_head head, wanted = mpm__io_blob_head_make("text", 0);
+    const char *differs;
+    long line;
+    if (fread(&head, sizeof head, 1, in) != 1 || memcmp(head.name, wanted.name, sizeof head.name) != 0)
+        return mpm_fail(fault, MPM_ERR_FILE, "text of checkpoint", 0, -1);
+    *crc = mpm__io_crc(*crc, &head, sizeof head);
+    differs = mpm__io_text_differs(in, head.bytes, text, &line, crc);
+    if (!differs) return MPM_OK;
+    return mpm_fail(fault, MPM_ERR_VERSION, *differs ? differs : "more lines in the file", 0, line);
+}
+
+/* Whether a stored blob is the one asked for and fits. */
+static inline int mpm__io_blob_fits(const mpm__io_blob_head *head, const mpm_blob *b)
+{
+    mpm__io_blob_head wanted = mpm__io_blob_head_make(b->name, 0);
+    if (memcmp(head->name, wanted.name, sizeof head->name) != 0) return 0;
+    return b->room > 0 ? head->bytes <= b->room : head->bytes == b->bytes;
+}
+
+/* Compares stamp, text, names, sizes and checksum with what is asked for; changes nothing. */
+static inline mpm_status mpm__io_checkpoint_verify(FILE *in, const char *text, const mpm_blob *blob, int count,
                                                    mpm_fault *fault)
 {
     mpm__io_stamp found, mine = mpm__io_stamp_make(count);
     uint32_t crc, stored;
+    mpm_status status;
     int i;
-    if (fread(&found, sizeof found, 1, in) != 1 || memcmp(found.magic, mine.magic, 16) != 0)
-        return mpm_fail(fault, MPM_ERR_FILE, "path: not a checkpoint", 0, -1);
-    if (memcmp(found.version, mine.version, 16) != 0)
-        return mpm_fail(fault, MPM_ERR_VERSION, "version of checkpoint", 0, -1);
-    if (found.order != mine.order)
-        return mpm_fail(fault, MPM_ERR_VERSION, "byte order of checkpoint", 0, -1);
-    if (found.real_size != mine.real_size)
-        return mpm_fail(fault, MPM_ERR_VERSION, "real size of checkpoint", (mpm_real)found.real_size, -1);
-    if (found.size_size != mine.size_size)
-        return mpm_fail(fault, MPM_ERR_VERSION, "word size of checkpoint", (mpm_real)found.size_size, -1);
+    if (fread(&found, sizeof found, 1, in) != 1) return mpm_fail(fault, MPM_ERR_FILE, "path: not a checkpoint", 0, -1);
+    if ((status = mpm__io_stamp_verify(&found, &mine, fault)) < 0) return status;
+    crc = mpm__io_crc(0, &found, sizeof found);
+    if ((status = mpm__io_text_verify(in, text, &crc, fault)) < 0) return status;
     if (found.count != mine.count)
         return mpm_fail(fault, MPM_ERR_FILE, "count of blobs differs", (mpm_real)found.count, -1);
-    crc = mpm__io_crc(0, &found, sizeof found);
     for (i = 0; i < count; i++) {
-        mpm__io_blob_head head, want = mpm__io_blob_head_make(&blobs[i]);
+        mpm__io_blob_head head;
         if (fread(&head, sizeof head, 1, in) != 1)
             return mpm_fail(fault, MPM_ERR_FILE, "checkpoint ends early", 0, i);
-        if (memcmp(head.name, want.name, sizeof head.name) != 0 || head.bytes != want.bytes)
+        if (!mpm__io_blob_fits(&head, &blob[i]))
             return mpm_fail(fault, MPM_ERR_FILE, "name or size of blob differs", 0, i);
         crc = mpm__io_crc(crc, &head, sizeof head);
-        if (!mpm__io_skip_summed(in, blobs[i].bytes, &crc))
+        if (!mpm__io_skip_summed(in, head.bytes, &crc))
             return mpm_fail(fault, MPM_ERR_FILE, "checkpoint ends early", 0, i);
     }
     if (fread(&stored, sizeof stored, 1, in) != 1 || fgetc(in) != EOF)
@@ -1212,58 +1265,192 @@ static inline mpm_status mpm__io_checkpoint_verify(FILE *in, const mpm_io_blob *
     return MPM_OK;
 }
 
-MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const mpm_io_blob *blobs, int count,
+/* The bytes of the blobs, into their places. */
+static inline int mpm__io_read_blobs(FILE *in, const char *text, mpm_blob *blob, int count)
+{
+    long skip = (long)(sizeof(mpm__io_stamp) + sizeof(mpm__io_blob_head) + strlen(text));
+    int i;
+    if (fseek(in, skip, SEEK_SET) != 0) return 0;
+    for (i = 0; i < count; i++) {
+        mpm__io_blob_head head;
+        if (fread(&head, sizeof head, 1, in) != 1 || !mpm__io_blob_fits(&head, &blob[i])) return 0;
+        blob[i].bytes = (size_t)head.bytes;
+        if (blob[i].bytes > 0 && fread(blob[i].data, 1, blob[i].bytes, in) != blob[i].bytes) return 0;
+    }
+    return 1;
+}
+
+MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const char *text, mpm_blob *blob, int count,
                                           mpm_fault *fault)
 {
     FILE *in;
-    int i, good = 1;
-    mpm_status status = mpm__io_blobs_check(blobs, count, fault);
+    int good = 1;
+    mpm_status status = mpm__io_blobs_check(blob, count, fault);
     if (status < 0) return status;
     in = path ? fopen(path, "rb") : NULL;
     if (!in) return mpm_fail(fault, MPM_ERR_FILE, "path: cannot be read", 0, -1);
-    status = mpm__io_checkpoint_verify(in, blobs, count, fault);
-    if (status == MPM_OK) {
-        good = fseek(in, (long)sizeof(mpm__io_stamp), SEEK_SET) == 0;
-        for (i = 0; i < count && good; i++) {
-            good = fseek(in, (long)sizeof(mpm__io_blob_head), SEEK_CUR) == 0;
-            if (good && blobs[i].bytes > 0)
-                good = fread(blobs[i].data, 1, blobs[i].bytes, in) == blobs[i].bytes;
-        }
-    }
+    if (!text) text = "";
+    status = mpm__io_checkpoint_verify(in, text, blob, count, fault);
+    if (status == MPM_OK) good = mpm__io_read_blobs(in, text, blob, count);
     fclose(in);
-    if (!good) return mpm_fail(fault, MPM_ERR_FILE, "path: reading failed", 0, -1);
-    return status;
+    return good ? status : mpm_fail(fault, MPM_ERR_FILE, "path: reading failed", 0, -1);
 }
 
-static inline mpm_io_blob mpm__io_blob(const char *name, void *data, size_t bytes)
+/* ---- descriptions as text ------------------------------------------------------------------- */
+
+MPM_API size_t mpm_io_line(char *buffer, size_t n, size_t used, const char *name, const char *value)
 {
-    mpm_io_blob b;
-    b.name = name;
-    b.bytes = bytes;
-    b.data = data;
-    return b;
+    used = mpm_append(buffer, n, used, name);
+    used = mpm_append(buffer, n, used, " ");
+    used = mpm_append(buffer, n, used, value);
+    return mpm_append(buffer, n, used, "\n");
 }
 
-MPM_API int mpm_io_world_blobs(mpm_world *w, mpm_io_blob *blobs)
+MPM_API size_t mpm_io_line_number(char *buffer, size_t n, size_t used, const char *name, double value)
 {
-    size_t points = (size_t)w->points.capacity, reals = w->stride * (size_t)w->fields;
-    int n = 0;
+    char text[40];
+    mpm_io_number_text(text, sizeof text, value);
+    return mpm_io_line(buffer, n, used, name, text);
+}
+
+/* A text being written, line by line. */
+typedef struct mpm__io_page {
+    char *buffer;
+    size_t n, used;
+    const char *of; /* stands before the names, with a number: "body 2 spacing"; or NULL */
+    int32_t number;
+} mpm__io_page;
+
+static inline void mpm__io_say(mpm__io_page *t, const char *text)
+{
+    t->used = mpm_append(t->buffer, t->n, t->used, text);
+}
+
+/* The beginning of a line. */
+static inline void mpm__io_name(mpm__io_page *t, const char *name)
+{
+    char text[40];
+    if (t->of) {
+        snprintf(text, sizeof text, " %ld ", (long)t->number);
+        mpm__io_say(t, t->of);
+        mpm__io_say(t, text);
+    }
+    mpm__io_say(t, name);
+}
+
+/* A line of `count` choices, whose words stand in a list. */
+#define MPM__IO_WORD(name, word, text) " " word,
+static inline void mpm__io_words(mpm__io_page *t, const char *name, const char *const *word, const int32_t *choice,
+                                 int count)
+{
+    int i;
+    mpm__io_name(t, name);
+    for (i = 0; i < count; i++) mpm__io_say(t, word[choice[i]]);
+    mpm__io_say(t, "\n");
+}
+
+/* A line of `count` values: reals or, where these are NULL, whole numbers. */
+static inline void mpm__io_values(mpm__io_page *t, const char *name, const mpm_real *real, const int32_t *whole,
+                                  int count)
+{
+    char text[40];
+    int i;
+    mpm__io_name(t, name);
+    for (i = 0; i < count; i++) {
+        if (real) mpm__io_print_real(text, sizeof text, real[i]);
+        else snprintf(text, sizeof text, "%ld", (long)whole[i]);
+        mpm__io_say(t, " ");
+        mpm__io_say(t, text);
+    }
+    mpm__io_say(t, "\n");
+}
+
+static inline void mpm__io_real(mpm__io_page *t, const char *name, mpm_real value)
+{
+    mpm__io_values(t, name, &value, NULL, 1);
+}
+
+static inline void mpm__io_whole(mpm__io_page *t, const char *name, int32_t value)
+{
+    mpm__io_values(t, name, NULL, &value, 1);
+}
+
+static inline void mpm__io_contact_text(mpm__io_page *t, const mpm_contact *c)
+{
+    static const char *const laws[] = {MPM_CONTACT_LIST(MPM__IO_WORD)};
+    static const char *const normals[] = {MPM_NORMAL_LIST(MPM__IO_WORD)};
+    const int32_t law = (int32_t)c->law, normal = (int32_t)c->normal;
+    mpm__io_words(t, "contact.law", laws, &law, 1);
+    mpm__io_words(t, "contact.normal", normals, &normal, 1);
+    mpm__io_real(t, "contact.friction", c->friction);
+    mpm__io_real(t, "contact.cutoff", c->cutoff);
+    mpm__io_whole(t, "contact.touch", c->touch);
+}
+
+/* The grid and what holds for all bodies. Capacities are left out: they may differ. */
+static inline void mpm__io_desc_text(mpm__io_page *t, const mpm_desc *d)
+{
+    static const char *const geometries[] = {MPM_GEOMETRY_LIST(MPM__IO_WORD)};
+    static const char *const bases[] = {MPM_BASIS_LIST(MPM__IO_WORD)};
+    static const char *const sides[] = {MPM_SIDE_LIST(MPM__IO_WORD)};
+    const int32_t geometry = (int32_t)d->geometry, basis = (int32_t)d->basis;
+    int32_t side[6];
+    int i;
+    for (i = 0; i < 6; i++) side[i] = (int32_t)d->side[i];
+    mpm__io_words(t, "geometry", geometries, &geometry, 1);
+    mpm__io_words(t, "basis", bases, &basis, 1);
+    mpm__io_values(t, "origin", d->origin, NULL, 3);
+    mpm__io_real(t, "cell", d->cell);
+    mpm__io_values(t, "cells", NULL, d->cells, 3);
+    mpm__io_words(t, "side", sides, side, 6);
+    mpm__io_real(t, "wall_friction", d->wall_friction);
+    mpm__io_contact_text(t, &d->contact);
+    mpm__io_values(t, "gravity", d->gravity, NULL, 3);
+    mpm__io_real(t, "mass_cutoff", d->mass_cutoff);
+    mpm__io_whole(t, "user_fields", d->user_fields);
+}
+
+#undef MPM__IO_WORD
+
+static inline void mpm__io_body_text(mpm__io_page *t, const mpm_body_desc *b)
+{
+    mpm__io_whole(t, "shape", (int32_t)b->shape.kind);
+    mpm__io_values(t, "center", b->shape.center, NULL, 3);
+    mpm__io_values(t, "half", b->shape.half, NULL, 3);
+    mpm__io_real(t, "spacing", b->spacing);
+    mpm__io_real(t, "density", b->density);
+    mpm__io_values(t, "velocity", b->velocity, NULL, 3);
+    mpm__io_real(t, "temperature", b->temperature);
+    mpm__io_whole(t, "stress", b->stress != NULL);
+    mpm__io_real(t, "wave_p", b->wave_p);
+    mpm__io_real(t, "wave_s", b->wave_s);
+    mpm__io_whole(t, "absorb", b->absorb);
+    mpm__io_real(t, "absorb_normal", b->absorb_normal);
+    mpm__io_real(t, "absorb_shear", b->absorb_shear);
+    mpm__io_real(t, "shell", b->shell);
+    mpm__io_whole(t, "id", b->id);
+}
+
+MPM_API size_t mpm_io_world_text(char *buffer, size_t n, const mpm_world *w)
+{
+    mpm__io_page t = {NULL, 0, 0, NULL, 0};
     int32_t i;
-    blobs[n++] = mpm__io_blob("point fields", w->field, reals * sizeof(mpm_real));
-    blobs[n++] = mpm__io_blob("point flags", w->points.flags, points);
-    blobs[n++] = mpm__io_blob("point ids", w->points.id, points * sizeof(int32_t));
-    blobs[n++] = mpm__io_blob("point count", &w->points.count, sizeof w->points.count);
-    blobs[n++] = mpm__io_blob("time", &w->time, sizeof w->time);
-    blobs[n++] = mpm__io_blob("steps", &w->steps, sizeof w->steps);
-    blobs[n++] = mpm__io_blob("ledger", &w->ledger, sizeof w->ledger);
-    blobs[n++] = mpm__io_blob("retired", &w->retired, sizeof w->retired);
-    blobs[n++] = mpm__io_blob("sorts", &w->sorts, sizeof w->sorts);
-    blobs[n++] = mpm__io_blob("notices", &w->notices, sizeof w->notices);
-    blobs[n++] = mpm__io_blob("held", &w->held, sizeof w->held);
-    blobs[n++] = mpm__io_blob("sorted runs", &w->sorted_runs, sizeof w->sorted_runs);
-    for (i = 0; i < w->bodies; i++)
-        blobs[n++] = mpm__io_blob("active points", &w->body[i].active, sizeof w->body[i].active);
-    return n;
+    t.buffer = buffer;
+    t.n = n;
+    t.used = mpm_io_line(buffer, n, 0, "mpm.h", MPM_VERSION);
+    mpm__io_desc_text(&t, &w->desc);
+    t.of = "rule";
+    for (i = 0; i < w->rules; i++) {
+        int32_t pair[2];
+        t.number = i;
+        pair[0] = w->rule[i].a;
+        pair[1] = w->rule[i].b;
+        mpm__io_values(&t, "bodies", NULL, pair, 2);
+        mpm__io_contact_text(&t, &w->rule[i].contact);
+    }
+    t.of = "body";
+    for (t.number = 0; t.number < w->bodies; t.number++) mpm__io_body_text(&t, &w->body[t.number].desc);
+    return t.used;
 }
 
 /* ---- deflate: LZ77 matches, Huffman codes -------------------------------------------------- */

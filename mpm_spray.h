@@ -38,7 +38,7 @@
      state                     mpm_spray; mpm_spray_init, _free, _add, _check, _bytes
      the step, phase by phase  mpm_spray_step = inject, fly, bin, find, resolve, move, escape
      the measures              mpm_spray_measure
-     restart                   mpm_spray_save, _load, _saved_bytes
+     restart                   mpm_spray_blobs, _restored
      the models, one by one    mpm_spray_restitution, _stick_speed, _drag_cd_re, _jet_velocity, ...
 
    CONFIGURATION: that of mpm.h (MPM_FLOAT, MPM_STATIC, MPM_MALLOC, MPM_FREE).
@@ -82,9 +82,8 @@
 #define mpm_spray_escape mpm_spray_escape_f32
 #define mpm_spray_time mpm_spray_time_f32
 #define mpm_spray_measure mpm_spray_measure_f32
-#define mpm_spray_saved_bytes mpm_spray_saved_bytes_f32
-#define mpm_spray_save mpm_spray_save_f32
-#define mpm_spray_load mpm_spray_load_f32
+#define mpm_spray_blobs mpm_spray_blobs_f32
+#define mpm_spray_restored mpm_spray_restored_f32
 #define mpm_spray_modulus mpm_spray_modulus_f32
 #define mpm_spray_limit_speed mpm_spray_limit_speed_f32
 #define mpm_spray_restitution mpm_spray_restitution_f32
@@ -190,6 +189,7 @@ typedef void (*mpm_spray_touch_fn)(void *user, const mpm_spray_touch *touch);
 
 /* Everything that makes a spray. mpm_spray_desc_default gives the paper's Table 1. */
 typedef struct mpm_spray_desc {
+    unsigned mark;                 /* set by mpm_spray_desc_default */
     /* solids */
     mpm_spray_solid particle, target;
     mpm_real density;              /* of the particles [kg/m^3] */
@@ -413,17 +413,17 @@ MPM_API void mpm_spray_measure(const mpm_spray *s, mpm_spray_metrics *m);
 
 /* ---- restart ------------------------------------------------------------------------------- */
 
-/* Bytes that mpm_spray_save writes now. */
-MPM_API size_t mpm_spray_saved_bytes(const mpm_spray *s);
+/* The state: all that the next step depends on, and what is counted. Fills blob[], at most MPM_SPRAY_BLOBS of them,
+   and returns how many. To go on from stored ones, prepare a spray with the same description and room for as many
+   particles, read them (mpm_io_checkpoint_read) and call mpm_spray_restored.
+   Test: 52_spray_flow (restart gives the same bytes as the uninterrupted run). */
+#define MPM_SPRAY_BLOBS (18 + MPM_SPRAY_PLANES)
+MPM_API int mpm_spray_blobs(mpm_spray *s, mpm_blob *blob);
 
-/* Writes the whole state into the caller's buffer: same machine, same real type, same version.
-   MPM_ERR_MEMORY. Test: 52_spray_flow (restart gives the same bytes as the uninterrupted run). */
-MPM_API mpm_status mpm_spray_save(const mpm_spray *s, void *buffer, size_t bytes);
-
-/* Brings such a state back into a spray initialised with the same description (its callbacks are
-   those of now). MPM_ERR_VERSION: another version or real type; MPM_ERR_MEMORY: too short;
-   MPM_ERR_FULL: more particles than its capacity. On failure the spray is unchanged. */
-MPM_API mpm_status mpm_spray_load(mpm_spray *s, const void *buffer, size_t bytes);
+/* Checks what was read into the blobs of mpm_spray_blobs, before anything of it is used, and builds what follows
+   from it. MPM_ERR_ARGUMENT / NAN, named by s->fault: the spray is then without particles.
+   Test: 51_spray_input. */
+MPM_API mpm_status mpm_spray_restored(mpm_spray *s, const mpm_blob *blob);
 
 /* ---- the models, one by one ---------------------------------------------------------------- */
 
@@ -804,6 +804,7 @@ MPM_API mpm_spray_desc mpm_spray_desc_default(void)
 {
     mpm_spray_desc d;
     memset(&d, 0, sizeof d);
+    d.mark = MPM_MARK;
     d.particle.shear = MPM_R(77e9);
     d.particle.bulk = MPM_R(167e9);
     d.particle.yield = MPM_R(690e6); /* not in the paper: taken equal to the target's */
@@ -1010,6 +1011,8 @@ static inline mpm_status mpm__spray_check_numbers(const mpm_spray_desc *d, mpm_f
 MPM_API mpm_status mpm_spray_check(const mpm_spray_desc *d, mpm_fault *fault)
 {
     mpm_status s;
+    if (d->mark != MPM_MARK)
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_spray_desc_default)", (mpm_real)d->mark, -1);
     if ((s = mpm__spray_check_solid(&d->particle, fault)) != MPM_OK) return s;
     if ((s = mpm__spray_check_solid(&d->target, fault)) != MPM_OK) return s;
     if ((s = mpm__spray_check_powder(d, fault)) != MPM_OK) return s;
@@ -2105,127 +2108,117 @@ MPM_API void mpm_spray_measure(const mpm_spray *s, mpm_spray_metrics *m)
 
 /* ---- restart ------------------------------------------------------------------------------- */
 
-/* A saved state: this, then the arrays listed in mpm__spray_arrays, packed. */
-typedef struct mpm__spray_head {
-    char magic[16];
-    int64_t live, deposited, planes, real;
-    mpm_spray_tally tally;
-    mpm_real point[MPM_SPRAY_PLANES][3];
-} mpm__spray_head;
+#define MPM__SPRAY_ARRAYS 15 /* come first */
 
-#define MPM__SPRAY_ARRAYS 15
-
-/* The arrays that make the state: where each is, and how many bytes of it count. */
-static inline void mpm__spray_arrays(const mpm_spray *s, size_t live, size_t deposited,
-                                     void *array[MPM__SPRAY_ARRAYS], size_t bytes[MPM__SPRAY_ARRAYS])
+MPM_API int mpm_spray_blobs(mpm_spray *s, mpm_blob *blob)
 {
     const size_t real = sizeof(mpm_real), i32 = sizeof(int32_t), i64 = sizeof(int64_t);
-    array[0] = s->x, bytes[0] = 3 * live * real;
-    array[1] = s->v, bytes[1] = 3 * live * real;
-    array[2] = s->spin, bytes[2] = 3 * live * real;
-    array[3] = s->radius, bytes[3] = live * real;
-    array[4] = s->density, bytes[4] = live * real;
-    array[5] = s->id, bytes[5] = live * i64;
-    array[6] = s->collisions, bytes[6] = live * i32;
-    array[7] = s->touches, bytes[7] = live * i32;
-    array[8] = s->drag, bytes[8] = 3 * live * real;
-    array[9] = s->known, bytes[9] = live * i32;
-    array[10] = s->deposit_x, bytes[10] = 3 * deposited * real;
-    array[11] = s->deposit_radius, bytes[11] = deposited * real;
-    array[12] = s->deposit_time, bytes[12] = deposited * real;
-    array[13] = s->deposit_id, bytes[13] = deposited * i64;
-    array[14] = s->deposit_collisions, bytes[14] = deposited * i32;
+    const size_t live = (size_t)s->live, stuck = (size_t)s->deposited, room = (size_t)s->desc.capacity;
+    int n = 0, k;
+    blob[n++] = mpm_blob_array("x", s->x, live, room, 3 * real);
+    blob[n++] = mpm_blob_array("v", s->v, live, room, 3 * real);
+    blob[n++] = mpm_blob_array("spin", s->spin, live, room, 3 * real);
+    blob[n++] = mpm_blob_array("radius", s->radius, live, room, real);
+    blob[n++] = mpm_blob_array("density", s->density, live, room, real);
+    blob[n++] = mpm_blob_array("id", s->id, live, room, i64);
+    blob[n++] = mpm_blob_array("collisions", s->collisions, live, room, i32);
+    blob[n++] = mpm_blob_array("touches", s->touches, live, room, i32);
+    blob[n++] = mpm_blob_array("drag", s->drag, live, room, 3 * real);
+    blob[n++] = mpm_blob_array("known", s->known, live, room, i32);
+    blob[n++] = mpm_blob_array("deposit x", s->deposit_x, stuck, room, 3 * real);
+    blob[n++] = mpm_blob_array("deposit radius", s->deposit_radius, stuck, room, real);
+    blob[n++] = mpm_blob_array("deposit time", s->deposit_time, stuck, room, real);
+    blob[n++] = mpm_blob_array("deposit id", s->deposit_id, stuck, room, i64);
+    blob[n++] = mpm_blob_array("deposit collisions", s->deposit_collisions, stuck, room, i32);
+    blob[n++] = mpm_blob_of("live", &s->live, sizeof s->live);
+    blob[n++] = mpm_blob_of("deposited", &s->deposited, sizeof s->deposited);
+    blob[n++] = mpm_blob_of("tally", &s->tally, sizeof s->tally);
+    for (k = 0; k < s->planes; k++)
+        blob[n++] = mpm_blob_of("point of plane", s->plane[k].point, sizeof s->plane[k].point);
+    return n;
 }
 
-MPM_API size_t mpm_spray_saved_bytes(const mpm_spray *s)
+/* The counts against each other and the capacity: as every step leaves them. */
+static inline mpm_status mpm__spray_restored_counts(const mpm_spray *s, mpm_fault *f)
 {
-    void *array[MPM__SPRAY_ARRAYS];
-    size_t bytes[MPM__SPRAY_ARRAYS], sum = sizeof(mpm__spray_head);
+    const mpm_spray_tally *t = &s->tally;
+    const mpm_spray_desc *d = &s->desc;
+    const int64_t most = INT64_C(1) << 52;
+    const double fed = d->batch > 0 ? (double)d->dt * (double)d->feed / d->batch : 0; /* batches per step */
+    mpm__spray_rule r[10];
+    int n = 0;
+    r[n++] = mpm__spray_rule_of("live", (mpm_real)s->live, s->live >= 0 && s->live <= d->capacity);
+    r[n++] = mpm__spray_rule_of("deposited", (mpm_real)s->deposited,
+                                s->deposited >= 0 && (int64_t)s->live + s->deposited <= d->capacity);
+    r[n++] = mpm__spray_rule_of("tally.deposited", (mpm_real)t->deposited, t->deposited == s->deposited);
+    r[n++] = mpm__spray_rule_of("tally.escaped", (mpm_real)t->escaped, t->escaped >= 0 && t->escaped < most);
+    r[n++] = mpm__spray_rule_of("tally.injected", (mpm_real)t->injected,
+                                t->injected >= 0 && t->injected < most &&
+                                    (double)t->injected - (double)t->escaped == (double)s->live + s->deposited);
+    r[n++] = mpm__spray_rule_of("tally.step", (mpm_real)t->step,
+                                t->step >= 0 && t->step < most && (double)t->step * fed < 1e15);
+    r[n++] = mpm__spray_rule_of("tally.batches", (mpm_real)t->batches,
+                                (double)t->batches >= ((double)t->step - 1) * fed - 1 && (double)t->batches < 1e15);
+    r[n++] = mpm__spray_rule_of("tally.pending", (mpm_real)t->pending,
+                                t->pending >= 0 && (double)t->pending <= (double)t->batches * d->batch);
+    r[n++] = mpm__spray_rule_of("tally.wait_radius", (mpm_real)t->wait_radius,
+                                t->wait_radius >= 0 && t->wait_radius <= (double)d->nozzle_radius);
+    r[n++] = mpm__spray_rule_of("tally.wait_speed", (mpm_real)t->wait_speed, 1);
+    return mpm__spray_judge(r, n, f);
+}
+
+/* As many values per array as there are particles. */
+static inline mpm_status mpm__spray_restored_sizes(mpm_spray *s, const mpm_blob *blob, mpm_fault *f)
+{
+    mpm_blob wanted[MPM_SPRAY_BLOBS];
+    mpm_status status = MPM_OK;
     int k;
-    mpm__spray_arrays(s, (size_t)s->live, (size_t)s->deposited, array, bytes);
-    for (k = 0; k < MPM__SPRAY_ARRAYS; k++) sum += bytes[k];
-    return sum;
+    mpm_spray_blobs(s, wanted);
+    for (k = 0; k < MPM__SPRAY_ARRAYS && status == MPM_OK; k++)
+        status = mpm_want(blob[k].bytes == wanted[k].bytes, f, wanted[k].name, (mpm_real)blob[k].bytes, -1);
+    return status;
 }
 
-static inline void mpm__spray_magic(char magic[16])
+/* The particles themselves and the places of the planes. */
+static inline mpm_status mpm__spray_restored_particles(const mpm_spray *s, mpm_fault *f)
 {
-    static const char text[16] = "mpm_spray " MPM_VERSION;
-    memcpy(magic, text, 16);
-}
-
-MPM_API mpm_status mpm_spray_save(const mpm_spray *s, void *buffer, size_t bytes)
-{
-    void *array[MPM__SPRAY_ARRAYS];
-    size_t size[MPM__SPRAY_ARRAYS];
-    char *to = (char *)buffer;
-    mpm__spray_head head;
-    int k;
-    if (bytes < mpm_spray_saved_bytes(s)) return MPM_ERR_MEMORY;
-    memset(&head, 0, sizeof head);
-    mpm__spray_magic(head.magic);
-    head.live = s->live;
-    head.deposited = s->deposited;
-    head.planes = s->planes;
-    head.real = (int64_t)sizeof(mpm_real);
-    head.tally = s->tally;
-    for (k = 0; k < s->planes; k++) memcpy(head.point[k], s->plane[k].point, sizeof head.point[k]);
-    memcpy(to, &head, sizeof head);
-    to += sizeof head;
-    mpm__spray_arrays(s, (size_t)s->live, (size_t)s->deposited, array, size);
-    for (k = 0; k < MPM__SPRAY_ARRAYS; k++) {
-        if (size[k]) memcpy(to, array[k], size[k]);
-        to += size[k];
-    }
-    return MPM_OK;
-}
-
-/* Whether a saved head fits this spray and this many bytes. */
-static inline mpm_status mpm__spray_check_head(mpm_spray *s, const mpm__spray_head *head, size_t bytes)
-{
-    void *array[MPM__SPRAY_ARRAYS];
-    size_t size[MPM__SPRAY_ARRAYS], need = sizeof *head;
-    char magic[16];
-    int k;
-    mpm__spray_magic(magic);
-    if (memcmp(magic, head->magic, sizeof magic) || head->real != (int64_t)sizeof(mpm_real))
-        return mpm_fail(&s->fault, MPM_ERR_VERSION, "saved state", (mpm_real)head->real, -1);
-    if (head->live < 0 || head->deposited < 0 || head->live > s->desc.capacity ||
-        head->deposited > s->desc.capacity || head->live + head->deposited > s->desc.capacity)
-        return mpm_fail(&s->fault, MPM_ERR_FULL, "particles of saved state", (mpm_real)head->live, -1);
-    if (head->planes != s->planes)
-        return mpm_fail(&s->fault, MPM_ERR_VERSION, "planes of saved state", (mpm_real)head->planes, -1);
-    mpm__spray_arrays(s, (size_t)head->live, (size_t)head->deposited, array, size);
-    for (k = 0; k < MPM__SPRAY_ARRAYS; k++) need += size[k];
-    if (bytes < need) return mpm_fail(&s->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
-    return MPM_OK;
-}
-
-MPM_API mpm_status mpm_spray_load(mpm_spray *s, const void *buffer, size_t bytes)
-{
-    void *array[MPM__SPRAY_ARRAYS];
-    size_t size[MPM__SPRAY_ARRAYS];
-    const char *from = (const char *)buffer + sizeof(mpm__spray_head);
-    mpm__spray_head head;
-    mpm_status status;
+    mpm_status status = MPM_OK;
+    mpm_spray_ball b;
     int32_t i;
     int k;
-    if (bytes < sizeof head) return mpm_fail(&s->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
-    memcpy(&head, buffer, sizeof head);
-    if ((status = mpm__spray_check_head(s, &head, bytes)) != MPM_OK) return status;
-    s->live = (int32_t)head.live;
-    s->deposited = (int32_t)head.deposited;
-    s->tally = head.tally;
-    for (k = 0; k < s->planes; k++) memcpy(s->plane[k].point, head.point[k], sizeof head.point[k]);
-    mpm__spray_arrays(s, (size_t)head.live, (size_t)head.deposited, array, size);
-    for (k = 0; k < MPM__SPRAY_ARRAYS; k++) {
-        if (size[k]) memcpy(array[k], from, size[k]);
-        from += size[k];
+    for (i = 0; i < s->live && status == MPM_OK; i++) {
+        mpm__spray_get(s, i, &b);
+        if ((status = mpm__spray_check_ball(&b, f)) != MPM_OK && f) f->index = i;
+    }
+    for (i = 0; i < s->deposited && status == MPM_OK; i++) {
+        const mpm_real *x = s->deposit_x + 3 * i;
+        status = mpm_want(1, f, "position in deposit", x[0] + x[1] + x[2], i);
+        if (status == MPM_OK)
+            status = mpm_want(s->deposit_radius[i] > 0, f, "radius in deposit", s->deposit_radius[i], i);
+    }
+    for (k = 0; k < s->planes && status == MPM_OK; k++) {
+        const mpm_real *x = s->plane[k].point;
+        status = mpm_want(1, f, "point of plane", x[0] + x[1] + x[2], k);
+    }
+    return status;
+}
+
+MPM_API mpm_status mpm_spray_restored(mpm_spray *s, const mpm_blob *blob)
+{
+    mpm_status status = mpm__spray_restored_counts(s, &s->fault);
+    int32_t i;
+    if (status == MPM_OK) status = mpm__spray_restored_sizes(s, blob, &s->fault);
+    if (status == MPM_OK) status = mpm__spray_restored_particles(s, &s->fault);
+    if (status != MPM_OK) {
+        s->live = s->deposited = 0;
+        memset(&s->tally, 0, sizeof s->tally);
+        s->tally.random = s->desc.seed;
     }
     /* the deposit's bins and box are made again, in the same order */
     mpm__spray_grid_clear(&s->deposit_bins, s->deposit_bins.cell, s->deposit_bins.mask + 1);
     s->deposit_radius_max = 0;
     for (i = 0; i < s->deposited; i++) mpm__spray_deposit_enter(s, i);
-    return MPM_OK;
+    return status;
 }
 
 #ifdef __cplusplus

@@ -101,10 +101,11 @@ typedef struct mpm_draw_canvas {
     void *memory;        /* to be freed, or NULL when it is the caller's */
 } mpm_draw_canvas;
 
-/* Memory needed for width x height pixels; 0 when that is out of range (1 .. 16384 each). */
+/* Memory needed for width x height pixels; 0 when that is out of range (1 .. 16384 each).
+   Test: 41_draw "canvas". */
 MPM_API size_t mpm_draw_canvas_bytes(int width, int height);
 /* A white canvas in the caller's memory, or in allocated memory when `memory` is NULL.
-   MPM_ERR_ARGUMENT, MPM_ERR_MEMORY. Test: 41_draw "png". */
+   MPM_ERR_ARGUMENT, MPM_ERR_MEMORY. Test: 41_draw "canvas". */
 MPM_API mpm_status mpm_draw_canvas_init(mpm_draw_canvas *c, int width, int height, void *memory, size_t bytes);
 MPM_API void mpm_draw_canvas_free(mpm_draw_canvas *c);
 
@@ -121,7 +122,8 @@ MPM_API void mpm_draw_disc(mpm_draw_canvas *c, double x, double y, double radius
 typedef enum mpm_draw_align { MPM_DRAW_LEFT = 0, MPM_DRAW_CENTER = 1, MPM_DRAW_RIGHT = 2 } mpm_draw_align;
 
 /* Text with its baseline at y, in a stroke font of our own: ASCII and the signs for micro, degree,
-   minus, times, middle dot, superscript 2 and 3. Unknown characters show as an empty box. */
+   minus, times, middle dot, superscript 2 and 3. Unknown characters show as an empty box.
+   Test: 41_draw "drawing". */
 MPM_API void mpm_draw_text(mpm_draw_canvas *c, double x, double y, double size, mpm_draw_align align,
                            mpm_draw_color color, const char *text);
 MPM_API double mpm_draw_text_width(double size, const char *text);
@@ -132,7 +134,7 @@ typedef enum mpm_draw_map { MPM_DRAW_DEEP = 0, MPM_DRAW_HEAT = 1, MPM_DRAW_DIVER
 
 /* The colour at t, clamped to 0 .. 1; grey when t is not a number. Test: 41_draw "colours". */
 MPM_API mpm_draw_color mpm_draw_map_color(mpm_draw_map map, double t);
-/* Distinct colours for curves and bodies, repeating after eight. */
+/* Distinct colours for curves and bodies, repeating after eight. Test: 41_draw "colours". */
 MPM_API mpm_draw_color mpm_draw_series_color(int number);
 
 /* ---- numbers and ticks --------------------------------------------------------------------- */
@@ -160,10 +162,10 @@ MPM_API int mpm_draw_ticks(double low, double high, int is_log, int want, mpm_dr
 /* Figures are drawn into a part of a canvas, so that any of them can share one picture. */
 typedef struct mpm_draw_rect { double x, y, width, height; } mpm_draw_rect;
 
-/* Tile `number` (row by row from the top left) of a canvas split into columns x rows. */
+/* Tile `number` (row by row from the top left) of a canvas split into columns x rows. Test: 41_draw "cut". */
 MPM_API mpm_draw_rect mpm_draw_tile(const mpm_draw_canvas *c, int columns, int rows, int number);
 
-/* A horizontal colour bar over the width of `where`, with ticks and its label below. */
+/* A horizontal colour bar over the width of `where`, with ticks and its label below. Test: 41_draw "colour bar". */
 MPM_API void mpm_draw_color_bar(mpm_draw_canvas *c, mpm_draw_rect where, mpm_draw_map map, double low, double high,
                                 const char *label);
 
@@ -199,10 +201,10 @@ typedef struct mpm_draw_cut_desc {
     int ticks;              /* 1: coordinates along the frame instead of a scale bar */
 } mpm_draw_cut_desc;
 
-/* normal 1, scale 1, map DEEP, style SMOOTH; count, x and spacing must be set ... */
+/* normal 1, scale 1, map DEEP, style SMOOTH; count, x and spacing must be set ... Test: 41_draw "cut". */
 MPM_API mpm_draw_cut_desc mpm_draw_cut_desc_default(void);
 /* ... or taken from a world, with `value` one of its point arrays, for instance
-   world->points.plastic_strain (NULL: coloured by body). */
+   world->points.plastic_strain (NULL: coloured by body). Test: 41_draw "world". */
 MPM_API mpm_draw_cut_desc mpm_draw_cut_of(const mpm_world *world, const mpm_real *value);
 
 /* Draws the cut into `where`. MPM_ERR_ARGUMENT (the fault names the field) when something needed is
@@ -229,7 +231,7 @@ typedef struct mpm_draw_scatter_desc {
     const char *x_label, *y_label;
 } mpm_draw_scatter_desc;
 
-/* dot 5, equal 1, scale 1. */
+/* dot 5, equal 1, scale 1. Test: 41_draw "scatter and plot". */
 MPM_API mpm_draw_scatter_desc mpm_draw_scatter_desc_default(void);
 /* Errors as for the cut. Test: 41_draw "scatter and plot". */
 MPM_API mpm_status mpm_draw_scatter(mpm_draw_canvas *c, mpm_draw_rect where, const mpm_draw_scatter_desc *d,
@@ -255,7 +257,7 @@ typedef struct mpm_draw_plot_desc {
     const char *title, *note, *x_label, *y_label; /* note: top right */
 } mpm_draw_plot_desc;
 
-/* Linear axes, fitted. */
+/* Linear axes, fitted. Test: 41_draw "scatter and plot". */
 MPM_API mpm_draw_plot_desc mpm_draw_plot_desc_default(void);
 /* MPM_ERR_ARGUMENT when there is nothing to draw. Test: 41_draw "scatter and plot". */
 MPM_API mpm_status mpm_draw_plot(mpm_draw_canvas *c, mpm_draw_rect where, const mpm_draw_plot_desc *d,

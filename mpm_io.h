@@ -134,16 +134,16 @@ extern "C" {
 /* Writes "meaning: field = value (index 12)" into buffer[n], cut to fit and always terminated when
    n > 0. The index (a point, a body or an axis: the field's name says which) is left out when
    negative; "= value" is left out for MPM_ERR_FILE and MPM_ERR_VERSION, where the field says what
-   of the file was wrong. Returns the length written. Test: 40_io.c "messages". */
+   of the file was wrong. Returns the length written. Test: 40_io "messages". */
 MPM_API size_t mpm_io_fault_text(char *buffer, size_t n, const mpm_fault *fault);
 
 /* Writes `value` into buffer[n] (32 bytes always suffice) with the fewest of 15 to 17 digits that
    bring it back exactly, and a decimal point under every locale. Not finite: "nan", "inf" or
-   "-inf". Returns the length written. Test: 40_io.c "numbers". */
+   "-inf". Returns the length written. Test: 40_io "numbers". */
 MPM_API size_t mpm_io_number_text(char *buffer, size_t n, double value);
 
 /* Puts a point where printf put the decimal separator of the locale, whatever its bytes: between the
-   digits of a printed number there is nothing else. Test: 40_io.c "numbers". */
+   digits of a printed number there is nothing else. Test: 40_io "numbers". */
 MPM_API void mpm_io_decimal_point(char *text);
 
 /* Where a run stands. Counts are of this run: after a restart set first_step. */
@@ -157,14 +157,14 @@ typedef struct mpm_io_progress {
 
 /* Writes "step 1200/9900  12 %  t = 9.7 ns  1.2e6 points/s  left 0:43" into buffer[n]. The rate and
    the time left appear once a step is done and time has passed. Returns the length written.
-   Test: 40_io.c "messages". */
+   Test: 40_io "messages". */
 MPM_API size_t mpm_io_progress_text(char *buffer, size_t n, const mpm_io_progress *p);
 
 /* ---- folders and files --------------------------------------------------------------------- */
 
 /* Makes the folder `path` and every missing folder above it. One that exists is fine.
    Returns MPM_ERR_FILE when it cannot be made (or a file is in its place), MPM_ERR_ARGUMENT for an
-   empty or too long path. `fault` may be NULL here and below. Test: 40_io.c "folders". */
+   empty or too long path. `fault` may be NULL here and below. Test: 40_io "folders". */
 MPM_API mpm_status mpm_io_make_directory(const char *path, mpm_fault *fault);
 
 /* A file being written: what all formats below are made of, and yours. */
@@ -174,20 +174,20 @@ typedef struct mpm_io_file {
 } mpm_io_file;
 
 /* Begins a file. MPM_ERR_FILE: it cannot be made; MPM_ERR_ARGUMENT: no path, or one too long.
-   Test: 40_io.c "failures", "format". */
+   Test: 40_io "failures", "format". */
 MPM_API mpm_status mpm_io_open(mpm_io_file *f, const char *path, mpm_fault *fault);
 /* Adds text, bytes, a number of double precision, an mpm_real or a whole number to it, numbers with
    the fewest digits that bring them back; nothing happens if the file is not open. No checking is
-   needed in between: an error sticks, and mpm_io_close finds it. */
+   needed in between: an error sticks, and mpm_io_close finds it. Test: 40_io "format". */
 MPM_API void mpm_io_put(mpm_io_file *f, const char *text);
 MPM_API void mpm_io_put_bytes(mpm_io_file *f, const void *data, size_t n);
 MPM_API void mpm_io_put_number(mpm_io_file *f, double value);
 MPM_API void mpm_io_put_real(mpm_io_file *f, mpm_real value);
 MPM_API void mpm_io_put_integer(mpm_io_file *f, long long value);
 /* Gives the file its name. MPM_ERR_FILE when it is not open or any write failed: then nothing of it
-   is left, and a file that had the name before is as it was. */
+   is left, and a file that had the name before is as it was. Test: 40_io "format". */
 MPM_API mpm_status mpm_io_close(mpm_io_file *f, mpm_fault *fault);
-/* Instead of close: gives the file up. */
+/* Instead of close: gives the file up. Test: 40_io "format". */
 MPM_API void mpm_io_drop(mpm_io_file *f);
 
 /* ---- JSON ---------------------------------------------------------------------------------- */
@@ -202,20 +202,20 @@ typedef struct mpm_io_json {
 } mpm_io_json;
 
 /* Starts an object whose first key is "mpm_version". Returns MPM_ERR_FILE when the file cannot be
-   made, MPM_ERR_ARGUMENT for a bad path. Test: 40_io.c "json". */
+   made, MPM_ERR_ARGUMENT for a bad path. Test: 40_io "json". */
 MPM_API mpm_status mpm_io_json_begin(mpm_io_json *j, const char *path, mpm_fault *fault);
 /* key: value. A number that is not finite becomes null; `real` prints the digits an mpm_real needs,
-   `number` those of a double. */
+   `number` those of a double. Test: 40_io "json". */
 MPM_API void mpm_io_json_number(mpm_io_json *j, const char *key, double value);
 MPM_API void mpm_io_json_real(mpm_io_json *j, const char *key, mpm_real value);
 MPM_API void mpm_io_json_integer(mpm_io_json *j, const char *key, long long value);
 MPM_API void mpm_io_json_bool(mpm_io_json *j, const char *key, int value);
 MPM_API void mpm_io_json_string(mpm_io_json *j, const char *key, const char *value);
-/* key: { ... } - the pairs between open and close belong to the inner object. */
+/* key: { ... } - the pairs between open and close belong to the inner object. Test: 40_io "json". */
 MPM_API void mpm_io_json_open(mpm_io_json *j, const char *key);
 MPM_API void mpm_io_json_close(mpm_io_json *j);
 /* Closes whatever is open and gives the file its name. MPM_ERR_FILE when any write failed,
-   MPM_ERR_ARGUMENT when open and close did not match: then there is no file. */
+   MPM_ERR_ARGUMENT when open and close did not match: then there is no file. Test: 40_io "json". */
 MPM_API mpm_status mpm_io_json_end(mpm_io_json *j, mpm_fault *fault);
 
 /* ---- CSV ----------------------------------------------------------------------------------- */
@@ -229,21 +229,21 @@ typedef struct mpm_io_csv {
 } mpm_io_csv;
 
 /* Starts a table. `columns` is the header line: names with commas between. A note other than NULL
-   comes first, as a line "# mpm.h <version>: <note>". Errors as for JSON. Test: 40_io.c "csv". */
+   comes first, as a line "# mpm.h <version>: <note>". Errors as for JSON. Test: 40_io "csv". */
 MPM_API mpm_status mpm_io_csv_begin(mpm_io_csv *t, const char *path, const char *columns,
                                     const char *note, mpm_fault *fault);
 /* The next cell: a number (not finite: nan, inf, -inf), a whole number, or text (quoted when it
-   has to be). After the last column the line ends by itself. */
+   has to be). After the last column the line ends by itself. Test: 40_io "csv". */
 MPM_API void mpm_io_csv_real(mpm_io_csv *t, mpm_real value);
 MPM_API void mpm_io_csv_integer(mpm_io_csv *t, long long value);
 MPM_API void mpm_io_csv_text(mpm_io_csv *t, const char *value);
-/* A whole row at once: values[columns]. */
+/* A whole row at once: values[columns]. Test: 40_io "csv". */
 MPM_API void mpm_io_csv_row(mpm_io_csv *t, const mpm_real *values);
 /* Gives the file its name. MPM_ERR_FILE when a write failed, MPM_ERR_ARGUMENT when the last row is
-   not full: then there is no file. */
+   not full: then there is no file. Test: 40_io "csv". */
 MPM_API mpm_status mpm_io_csv_end(mpm_io_csv *t, mpm_fault *fault);
 /* Instead of end: gives the table up, even in the middle of a row or after an error. What is written so
-   far is removed; a file that had the name before stays as it was. Test: 40_io.c "dropped". */
+   far is removed; a file that had the name before stays as it was. Test: 40_io "dropped". */
 MPM_API void mpm_io_csv_drop(mpm_io_csv *t);
 
 /* ---- ParaView ------------------------------------------------------------------------------ */
@@ -260,7 +260,7 @@ typedef struct mpm_io_field {
     const int32_t *integers;  /* one component of ids or body numbers, or NULL */
 } mpm_io_field;
 
-/* Fields from their arrays. Test: 40_io.c "vtu". */
+/* Fields from their arrays. Test: 40_io "vtu". */
 MPM_API mpm_io_field mpm_io_scalar(const char *name, const mpm_real *data, double scale);
 MPM_API mpm_io_field mpm_io_vector(const char *name, const mpm_real *x, const mpm_real *y,
                                    const mpm_real *z, double scale);
@@ -283,20 +283,20 @@ typedef struct mpm_io_vtu_desc {
     const char *note;           /* kept in a comment: what made this file; or NULL */
 } mpm_io_vtu_desc;
 
-/* No points, no fields, scale 1, time 0. */
+/* No points, no fields, scale 1, time 0. Test: 40_io "vtu". */
 MPM_API mpm_io_vtu_desc mpm_io_vtu_desc_default(void);
 
 /* Writes a VTK XML UnstructuredGrid (.vtu) of one vertex per point, data appended raw.
-   MPM_ERR_ARGUMENT for a field without data, name or components; MPM_ERR_FILE. Test: "vtu". */
+   MPM_ERR_ARGUMENT for a field without data, name or components; MPM_ERR_FILE. Test: 40_io "vtu". */
 MPM_API mpm_status mpm_io_vtu(const char *path, const mpm_io_vtu_desc *d, mpm_fault *fault);
 
-/* numbers[world->points.count]: the body of each point, -1 where it is retired. Test: "vtu". */
+/* numbers[world->points.count]: the body of each point, -1 where it is retired. Test: 40_io "vtu". */
 MPM_API void mpm_io_body_numbers(const mpm_world *world, int32_t *numbers);
 
 /* A time series (.pvd): begin writes an empty one, add appends a frame, given as the name of its
    .vtu relative to the folder of the .pvd. The file is complete after every call. A frame of the
    same name is replaced, so that a restarted run may go on with the series it finds; a missing
-   .pvd is begun. MPM_ERR_FILE when it cannot be written or is not one of ours. Test: "pvd". */
+   .pvd is begun. MPM_ERR_FILE when it cannot be written or is not one of ours. Test: 40_io "pvd". */
 MPM_API mpm_status mpm_io_pvd_begin(const char *path, mpm_fault *fault);
 MPM_API mpm_status mpm_io_pvd_add(const char *path, const char *frame, double time,
                                   mpm_fault *fault);
@@ -307,24 +307,24 @@ MPM_API mpm_status mpm_io_pvd_add(const char *path, const char *frame, double ti
    that goes on from them. The head of the file can be read with any viewer of text.
 
    Writes text (NULL: none) and blob[count] with version, real size, byte order and a CRC-32 over
-   everything, so that a restart is bitwise. MPM_ERR_FILE, MPM_ERR_ARGUMENT. Test: 40_io.c "checkpoint". */
+   everything, so that a restart is bitwise. MPM_ERR_FILE, MPM_ERR_ARGUMENT. Test: 40_io "checkpoint". */
 MPM_API mpm_status mpm_io_checkpoint_write(const char *path, const char *text, const mpm_blob *blob, int count,
                                            mpm_fault *fault);
 /* Reads them back: the same names in the same order, of sizes that fit. All is verified before the first byte is
    changed; what the numbers say is for mpm_restored, mpm_spray_restored to check.
    MPM_ERR_VERSION: by another version of mpm.h, real type or byte order, or of another text: then fault.field is
    the first line of yours that the file has not, fault.index its number, from 1.
-   MPM_ERR_FILE: missing, damaged, or holding other blobs (the fault tells which). Test: 40_io.c "checkpoint". */
+   MPM_ERR_FILE: missing, damaged, or holding other blobs (the fault tells which). Test: 40_io "checkpoint". */
 MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const char *text, mpm_blob *blob, int count,
                                           mpm_fault *fault);
 
 /* A world's description as such a text, into buffer[n], cut to fit: grid, sides, contact rules and bodies, one
    "name value" a line; 1500 bytes and 800 for each body suffice. Materials are known to you alone: add lines of
-   theirs, and of the time step, behind the length that is returned. Test: 40_io.c "restart". */
+   theirs, and of the time step, behind the length that is returned. Test: 40_io "restart". */
 MPM_API size_t mpm_io_world_text(char *buffer, size_t n, const mpm_world *world);
 
 /* Adds a line "name value" behind the `used` characters in buffer[n], cut to fit. Returns the new length.
-   Test: 40_io.c "checkpoint". */
+   Test: 40_io "checkpoint". */
 MPM_API size_t mpm_io_line(char *buffer, size_t n, size_t used, const char *name, const char *value);
 MPM_API size_t mpm_io_line_number(char *buffer, size_t n, size_t used, const char *name, double value);
 
@@ -332,7 +332,7 @@ MPM_API size_t mpm_io_line_number(char *buffer, size_t n, size_t used, const cha
 
 /* Writes pixels as PNG: 3 width height bytes, red green blue, row by row from the top; `note` (or NULL) is
    kept in it as its description. MPM_ERR_ARGUMENT for sizes out of range (1 .. 16384 each), MPM_ERR_FILE,
-   MPM_ERR_MEMORY. Test: 40_io.c "png". */
+   MPM_ERR_MEMORY. Test: 40_io "png". */
 MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int width, int height,
                               const char *note, mpm_fault *fault);
 

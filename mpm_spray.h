@@ -340,25 +340,27 @@ MPM_API mpm_spray_desc mpm_spray_desc_default(void);
    MPM_ERR_ARGUMENT, MPM_ERR_NAN. Test: 51_spray_input. */
 MPM_API mpm_status mpm_spray_check(const mpm_spray_desc *d, mpm_fault *fault);
 
-/* Bytes that mpm_spray_init needs; 0 if d is invalid or the size overflows. */
+/* Bytes that mpm_spray_init needs; 0 if d is invalid or the size overflows. Test: 51_spray_input. */
 MPM_API size_t mpm_spray_bytes(const mpm_spray_desc *d);
 
 /* Prepares a spray in the caller's memory (kept until the end, aligned as malloc aligns), or with
-   NULL in memory from MPM_MALLOC. MPM_ERR_ARGUMENT / NAN (see s->fault), MPM_ERR_MEMORY. */
+   NULL in memory from MPM_MALLOC. MPM_ERR_ARGUMENT / NAN (see s->fault), MPM_ERR_MEMORY.
+   Test: 51_spray_input, 52_spray_flow. */
 MPM_API mpm_status mpm_spray_init(mpm_spray *s, const mpm_spray_desc *d, void *memory, size_t bytes);
 
-/* Gives back what MPM_MALLOC gave. Safe after a failed mpm_spray_init. */
+/* Gives back what MPM_MALLOC gave. Safe after a failed mpm_spray_init. Test: 51_spray_input. */
 MPM_API void mpm_spray_free(mpm_spray *s);
 
 /* Puts one particle into flight; it counts as injected. Whether it overlaps another is not checked
-   (overlapping particles that approach collide at once). MPM_ERR_ARGUMENT / NAN, MPM_ERR_FULL. */
+   (overlapping particles that approach collide at once). MPM_ERR_ARGUMENT / NAN, MPM_ERR_FULL.
+   Test: 51_spray_input. */
 MPM_API mpm_status mpm_spray_add(mpm_spray *s, const mpm_spray_ball *ball);
 
 /* ---- the step, phase by phase -------------------------------------------------------------- */
 
 /* One step of dt: the phases below in their order. MPM_NOT_CONVERGED: the drag iteration of some
    particle reached its limit and the exponential update was used for it (tally.not_converged).
-   MPM_ERR_FULL, MPM_ERR_NAN: see inject and fly; the step is then incomplete. */
+   MPM_ERR_FULL, MPM_ERR_NAN: see inject and fly; the step is then incomplete. Test: 52_spray_flow. */
 MPM_API mpm_status mpm_spray_step(mpm_spray *s);
 
 /* Feeds the batches that are due (B 35), one particle after the other, each at a random place of
@@ -372,23 +374,24 @@ MPM_API mpm_status mpm_spray_inject(mpm_spray *s);
    Tests: 50_spray (transit times, terminal speed, orders), 52_spray_flow (dust). */
 MPM_API mpm_status mpm_spray_fly(mpm_spray *s);
 
-/* Puts the particles into bins (4.3, "direct binning"): linear in their number. */
+/* Puts the particles into bins (4.3, "direct binning"): linear in their number. Test: 53_spray_search. */
 MPM_API void mpm_spray_bin(mpm_spray *s);
 
 /* Finds the first contact on each particle's path (B 40, 41). Test: 53_spray_search. */
 MPM_API void mpm_spray_find(mpm_spray *s);
 
 /* Carries out the contacts in the order of time: impulse (B 7-15, 22, 23) or deposition (B 34). A
-   particle that has been hit looks for its next contact along its new path. */
+   particle that has been hit looks for its next contact along its new path. Test: 50_spray, 53_spray_search. */
 MPM_API void mpm_spray_resolve(mpm_spray *s);
 
-/* Takes everything to the end of the step, moving planes included. */
+/* Takes everything to the end of the step, moving planes included. Test: 50_spray. */
 MPM_API void mpm_spray_move(mpm_spray *s);
 
-/* Closes the ranks: removes what was deposited or has left the box (4.1). */
+/* Closes the ranks: removes what was deposited or has left the box (4.1). Test: 52_spray_flow. */
 MPM_API void mpm_spray_escape(mpm_spray *s);
 
-MPM_API mpm_real mpm_spray_time(const mpm_spray *s); /* step * dt [s] */
+/* step * dt [s]. Test: 52_spray_flow. */
+MPM_API mpm_real mpm_spray_time(const mpm_spray *s);
 
 /* ---- the measures -------------------------------------------------------------------------- */
 
@@ -427,11 +430,11 @@ MPM_API mpm_status mpm_spray_restored(mpm_spray *s, const mpm_blob *blob);
 
 /* ---- the models, one by one ---------------------------------------------------------------- */
 
-/* E* of two solids [Pa]: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, E and nu from the moduli. */
+/* E* of two solids [Pa]: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, E and nu from the moduli. Test: 50_spray. */
 MPM_API mpm_real mpm_spray_modulus(const mpm_spray_solid *a, const mpm_spray_solid *b);
 
 /* Speed below which a contact stays elastic [m/s] (B 17). mass, radius: those of the particle at a
-   wall, m1 m2/(m1 + m2) and R1 R2/(R1 + R2) for a pair (the text leaves them undefined there). */
+   wall, m1 m2/(m1 + m2) and R1 R2/(R1 + R2) for a pair (the text leaves them undefined there). Test: 50_spray. */
 MPM_API mpm_real mpm_spray_limit_speed(mpm_real mass, mpm_real radius, mpm_real yield, mpm_real modulus);
 
 /* Restitution e at a normal speed >= 0 (B 18), never above 1: as printed it is 2.277 at the limit
@@ -440,20 +443,20 @@ MPM_API mpm_real mpm_spray_restitution(mpm_real speed, mpm_real mass, mpm_real r
                                        mpm_real modulus);
 
 /* Duration of an elastic contact [s] (B 16), speed > 0, and of the compression phase of an
-   inelastic one (B 19); the recovery then takes 1.2 e times as long as the compression. */
+   inelastic one (B 19); the recovery then takes 1.2 e times as long as the compression. Test: 50_spray. */
 MPM_API mpm_real mpm_spray_elastic_time(mpm_real speed, mpm_real mass, mpm_real radius, mpm_real modulus);
 MPM_API mpm_real mpm_spray_compression_time(mpm_real mass, mpm_real radius, mpm_real yield);
 
 /* Interface energy of two surface energies [J/m^2]. The paper has three different ones; since only
-   alpha times it matters, the choice rescales alpha. */
+   alpha times it matters, the choice rescales alpha. Test: 50_spray. */
 MPM_API mpm_real mpm_spray_gamma12(mpm_spray_mixing rule, mpm_real gamma1, mpm_real gamma2);
 
 /* Largest normal speed that sticks [m/s]: 0.2 alpha F dt1 / m (B 34, last line), with the
-   attractive force F = 4 pi gamma R (the size of B 32, whose sign is a misprint). */
+   attractive force F = 4 pi gamma R (the size of B 32, whose sign is a misprint). Test: 50_spray. */
 MPM_API mpm_real mpm_spray_stick_speed(mpm_real alpha, mpm_real gamma, mpm_real mass, mpm_real radius,
                                        mpm_real yield);
 
-/* The paper's criterion, for mpm_spray_desc.stick: below that speed it sticks. user is not used. */
+/* The paper's criterion, for mpm_spray_desc.stick: below that speed it sticks. user is not used. Test: 50_spray. */
 MPM_API int mpm_spray_stick_adhesion(void *user, const mpm_spray_touch *touch);
 
 /* The cold-spray window, which the paper names as the natural other criterion: bonds from a
@@ -466,10 +469,13 @@ typedef struct mpm_spray_window {
 } mpm_spray_window;
 
 /* Aluminium on aluminium by source A: 824 m/s at 14 um to 761 m/s at 30 um, linear (its table 5.4).
-   It gives no erosion velocity; set one if you know it. */
+   It gives no erosion velocity; set one if you know it. Test: 50_spray. */
 MPM_API mpm_spray_window mpm_spray_window_aluminium(void);
-MPM_API mpm_real mpm_spray_window_critical(const mpm_spray_window *w, mpm_real diameter); /* >= 0 */
-/* The criterion for mpm_spray_desc.stick; user points to a mpm_spray_window. */
+
+/* The critical velocity of a diameter [m/s], >= 0. Test: 50_spray. */
+MPM_API mpm_real mpm_spray_window_critical(const mpm_spray_window *w, mpm_real diameter);
+
+/* The criterion for mpm_spray_desc.stick; user points to a mpm_spray_window. Test: 50_spray. */
 MPM_API int mpm_spray_stick_window(void *user, const mpm_spray_touch *touch);
 
 /* Collision of two balls that touch (B 7-15): changes v and spin, returns the normal impulse
@@ -480,19 +486,19 @@ MPM_API mpm_real mpm_spray_collide(mpm_spray_ball *a, mpm_spray_ball *b, mpm_rea
                                    mpm_real speed);
 
 /* The same against something that does not recoil (B 20-23), with unit normal n towards the ball
-   and surface velocity u. */
+   and surface velocity u. Test: 50_spray. */
 MPM_API mpm_real mpm_spray_collide_fixed(mpm_spray_ball *a, const mpm_real n[3], const mpm_real u[3],
                                          mpm_real e, mpm_real friction, mpm_real speed);
 
-/* Cd Re of a sphere (Haider and Levenspiel, B 25 times Re: finite at Re = 0, where it is 24). */
+/* Cd Re of a sphere (Haider and Levenspiel, B 25 times Re: finite at Re = 0, where it is 24). Test: 50_spray. */
 MPM_API mpm_real mpm_spray_drag_cd_re(mpm_real re);
 
-/* 1 / relaxation time [1/s]: dv/dt = rate (u - v) (B 24). slip: |u - v| [m/s]. */
+/* 1 / relaxation time [1/s]: dv/dt = rate (u - v) (B 24). slip: |u - v| [m/s]. Test: 50_spray. */
 MPM_API mpm_real mpm_spray_drag_rate(mpm_real slip, mpm_real radius, mpm_real density,
                                      mpm_real gas_density, mpm_real gas_viscosity);
 
 /* The jet that leaves a nozzle with a given speed: half width (sech^2 = 1/2) equal to the nozzle
-   radius at the end of the core. All > 0; blend <= core. */
+   radius at the end of the core. All > 0; blend <= core. Test: 50_spray. */
 MPM_API mpm_spray_jet mpm_spray_jet_make(mpm_real speed, mpm_real nozzle_radius, mpm_real core,
                                          mpm_real blend);
 
@@ -501,10 +507,10 @@ MPM_API mpm_spray_jet mpm_spray_jet_make(mpm_real speed, mpm_real nozzle_radius,
 MPM_API void mpm_spray_jet_velocity(const mpm_spray_jet *j, int axisymmetric, const mpm_real x[3],
                                     mpm_real u[3]);
 
-/* Uniform number in [0, 1) from a 64-bit state, which it advances. Any seed will do. */
+/* Uniform number in [0, 1) from a 64-bit state, which it advances. Any seed will do. Test: 50_spray. */
 MPM_API mpm_real mpm_spray_random(uint64_t *state);
 
-/* Weibull scale lambda from the median diameter and the shape n (B 37). */
+/* Weibull scale lambda from the median diameter and the shape n (B 37). Test: 50_spray. */
 MPM_API mpm_real mpm_spray_size_scale(mpm_real median, mpm_real shape);
 
 /* Diameter at the quantile u in [0, 1) of the distribution B 36 truncated to [min, max] (max may be

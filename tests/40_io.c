@@ -290,8 +290,9 @@ static void test_format(void)
     equal("a file of bytes", mpm_io_open(&f, FOLDER "/bytes", &fault), MPM_OK);
     mpm_io_put_bytes(&f, three, 3);
     mpm_io_put_bytes(&f, NULL, 0);
+    mpm_io_put_number(&f, 1.0 / 3);
     equal("... is closed", mpm_io_close(&f, &fault), MPM_OK);
-    holds("... and holds them", contains_bytes(FOLDER "/bytes", (const char *)three, 3));
+    holds("... and holds them, and a number", contains_bytes(FOLDER "/bytes", "\1\0\2" "0.3333333333333333", 21));
     equal("closed again", mpm_io_close(&f, &fault), MPM_ERR_FILE);
     equal("the same file again", mpm_io_open(&f, FOLDER "/bytes", &fault), MPM_OK);
     mpm_io_put(&f, "other");

@@ -133,6 +133,7 @@ static void test_determinism(void)
     CHECK_EQUAL("... which is step 1000", c.tally.step, 1000);
     run_to(&b, 2000);
     CHECK_TRUE("same seed, same bytes", same_state(&a, &b));
+    CHECK_RELATIVE("the time of step 2000 [s]", mpm_spray_time(&b), 2000 * 5e-6, 4 * (double)MPM_EPSILON);
     run_to(&c, 2000);
     CHECK_TRUE("restart at half time gives the bytes of the uninterrupted run", same_state(&a, &c));
     CHECK_TRUE("... of a run with deposit, bounces and collisions",

@@ -161,6 +161,8 @@ typedef double mpm_real;
 #define mpm_pair_push mpm_pair_push_f32
 #define mpm_body_totals mpm_body_totals_f32
 #define mpm_bytes_used mpm_bytes_used_f32
+#define mpm_blobs mpm_blobs_f32
+#define mpm_restored mpm_restored_f32
 #endif
 
 #ifdef __cplusplus
@@ -182,7 +184,7 @@ extern "C" {
     X(MPM_ERR_UNKNOWN, -7, "a name is not known")                                       \
     X(MPM_ERR_FILE, -8, "a file could not be written or read")                          \
     X(MPM_ERR_STATE, -9, "a point has left the range of its model")                     \
-    X(MPM_ERR_VERSION, -10, "a file was made by another version or real type")          \
+    X(MPM_ERR_VERSION, -10, "a file is of another version, real type or description")   \
     X(MPM_CLAMPED, 1, "a value was limited to its valid range")                         \
     X(MPM_NOT_CONVERGED, 2, "an iteration reached its limit; the last value is usable") \
     X(MPM_RETIRED, 3, "points left the grid and were retired")
@@ -194,7 +196,7 @@ typedef enum mpm_status {
     MPM_STATUS_LAST = 4
 } mpm_status;
 
-/* The first thing that went wrong, so that a message can name it. `field` is a static string. */
+/* The first thing that went wrong, so that a message can name it. `field` is a text that stays. */
 typedef struct mpm_fault {
     mpm_status status;
     const char *field;  /* what was wrong: "cell", "density of point", ... */
@@ -205,6 +207,8 @@ typedef struct mpm_fault {
 /* ---- tools --------------------------------------------------------------------------------- */
 
 /* What the headers share, for your own laws too: static inline, free to use. */
+
+#define MPM_MARK 0x6d706d32u /* what a _default function leaves in `mark`: a zeroed description is told by it */
 
 #define MPM_PI MPM_R(3.14159265358979323846)
 #define MPM_ALIGN 64 /* bytes: of what mpm_carve hands out */
@@ -270,6 +274,34 @@ static inline size_t mpm_append(char *buffer, size_t n, size_t used, const char 
     for (i = 0; used + 1 < n && text[i]; i++) buffer[used++] = text[i];
     if (n) buffer[used] = 0;
     return used;
+}
+
+/* A named stretch of memory: of such the state of a world or a spray is made, and yours, for a checkpoint (mpm_io.h).
+   Its bits are stored as they are; pointers among them must be set again after reading. */
+typedef struct mpm_blob {
+    const char *name; /* shorter than 64 bytes */
+    void *data;       /* read from when storing, written to when reading */
+    size_t bytes;     /* to be stored; after reading, those that were */
+    size_t room;      /* the most that may be read; 0: exactly `bytes` */
+} mpm_blob;
+
+/* One of fixed size, and one of `count` items of `size` bytes where there is room for `room` items.
+   Test: 40_io "checkpoint". */
+static inline mpm_blob mpm_blob_of(const char *name, void *data, size_t bytes)
+{
+    mpm_blob b;
+    b.name = name;
+    b.data = data;
+    b.bytes = bytes;
+    b.room = 0;
+    return b;
+}
+
+static inline mpm_blob mpm_blob_array(const char *name, void *data, size_t count, size_t room, size_t size)
+{
+    mpm_blob b = mpm_blob_of(name, data, count * size);
+    b.room = room * size;
+    return b;
 }
 
 /* ---- units --------------------------------------------------------------------------------- */
@@ -865,6 +897,22 @@ MPM_API mpm_totals mpm_body_totals(const mpm_world *w, int32_t body);
 
 /* Bytes in use. Test: 21_world. */
 MPM_API size_t mpm_bytes_used(const mpm_world *w);
+
+/* ---- restart ------------------------------------------------------------------------------- */
+
+/* The state of a world: all that its next step depends on, and what is counted. Fills blob[], at most
+   MPM_BLOBS(w->bodies) of them, and returns how many. To go on from stored ones, set a world up as before - the
+   same description, bodies, rules and user fields, room for as many points -, read them (mpm_io_checkpoint_read)
+   and call mpm_restored. Test: 40_io "restart": the run goes on bit for bit. */
+#define MPM_BLOBS(bodies) (48 + (bodies))
+MPM_API int mpm_blobs(mpm_world *w, mpm_blob *blob);
+
+/* Checks what was read into the blobs of mpm_blobs, before anything of it is used: numbers of points against each
+   other and the memory there is. MPM_ERR_ARGUMENT / NAN, named by w->fault: the world is then without points.
+   Test: 40_io "restart". */
+MPM_API mpm_status mpm_restored(mpm_world *w, const mpm_blob *blob);
+
+/* ---- what it is ---------------------------------------------------------------------------- */
 
 /* What a status means, and the version of the implementation. Test: 21_world. */
 MPM_API const char *mpm_status_text(mpm_status s);
@@ -2732,6 +2780,91 @@ MPM_API mpm_totals mpm_body_totals(const mpm_world *w, int32_t body)
         t.plastic_work_mean = (t.plastic_work_mean + rest[7]) / t.mass;
     }
     return t;
+}
+
+/* ---- restart --------------------------------------------------------------------------------- */
+
+MPM_API int mpm_blobs(mpm_world *w, mpm_blob *blob)
+{
+    mpm_points *p = &w->points;
+    const size_t count = (size_t)p->count, room = (size_t)p->capacity, real = sizeof(mpm_real);
+    int n = 0, i;
+    int32_t b;
+#define MPM__VECTOR(name, components, unit, text) \
+    for (i = 0; i < components; i++) blob[n++] = mpm_blob_array(#name, p->name[i], count, room, real);
+#define MPM__SCALAR(name, components, unit, text) blob[n++] = mpm_blob_array(#name, p->name, count, room, real);
+    MPM_POINT_VECTORS(MPM__VECTOR)
+    MPM_POINT_SCALARS(MPM__SCALAR)
+#undef MPM__VECTOR
+#undef MPM__SCALAR
+    for (i = 0; i < w->desc.user_fields; i++) blob[n++] = mpm_blob_array("user", p->user[i], count, room, real);
+    blob[n++] = mpm_blob_array("flags", p->flags, count, room, 1);
+    blob[n++] = mpm_blob_array("id", p->id, count, room, sizeof(int32_t));
+    blob[n++] = mpm_blob_of("points", &p->count, sizeof p->count);
+    blob[n++] = mpm_blob_of("next id", &w->next_id, sizeof w->next_id);
+    blob[n++] = mpm_blob_of("time", &w->time, sizeof w->time);
+    blob[n++] = mpm_blob_of("steps", &w->steps, sizeof w->steps);
+    blob[n++] = mpm_blob_of("ledger", &w->ledger, sizeof w->ledger);
+    blob[n++] = mpm_blob_of("retired", &w->retired, sizeof w->retired);
+    blob[n++] = mpm_blob_of("sorts", &w->sorts, sizeof w->sorts);
+    blob[n++] = mpm_blob_of("sorted runs", &w->sorted_runs, sizeof w->sorted_runs);
+    blob[n++] = mpm_blob_of("notices", &w->notices, sizeof w->notices);
+    blob[n++] = mpm_blob_of("tally", w->tally, sizeof w->tally);
+    blob[n++] = mpm_blob_of("held", &w->held, sizeof w->held);
+    for (b = 0; b < w->bodies; b++) /* first, count and active stand side by side */
+        blob[n++] = mpm_blob_of("points of body", &w->body[b].first, 3 * sizeof(int32_t));
+    return n;
+}
+
+/* Every body's points follow those of the body before it, within the memory there is. */
+static inline mpm_status mpm__restored_counts(const mpm_world *w, mpm_fault *f)
+{
+    const mpm_points *p = &w->points;
+    mpm_status s = mpm_want(p->count >= 0 && p->count <= p->capacity, f, "points", (mpm_real)p->count, -1);
+    int32_t b, next = 0;
+    for (b = 0; b < w->bodies && s == MPM_OK; b++) {
+        const mpm_body *B = &w->body[b];
+        s = mpm_want(B->first == next && B->count >= 0 && B->count <= p->count - next, f, "points of body",
+                     (mpm_real)B->count, b);
+        if (s == MPM_OK)
+            s = mpm_want(B->active >= 0 && B->active <= B->count, f, "active points of body", (mpm_real)B->active, b);
+        if (s == MPM_OK) next += B->count;
+    }
+    if (s == MPM_OK) s = mpm_want(next == p->count, f, "points of all bodies", (mpm_real)next, -1);
+    if (s == MPM_OK) s = mpm_want(w->next_id >= 0, f, "next id", (mpm_real)w->next_id, -1);
+    if (s == MPM_OK) s = mpm_want(w->sorted_runs >= 0, f, "sorted runs", (mpm_real)w->sorted_runs, -1);
+    return s == MPM_OK ? mpm_want(1, f, "time", w->time, -1) : s;
+}
+
+/* As many values per array as there are points, and what is divided by. Positions are seen to by mpm_locate. */
+static inline mpm_status mpm__restored_points(const mpm_world *w, const mpm_blob *blob, mpm_fault *f)
+{
+    const mpm_points *p = &w->points;
+    mpm_status s = MPM_OK;
+    int32_t i;
+    int k;
+    for (k = 0; k < w->fields + 2 && s == MPM_OK; k++) {
+        const size_t size = k < w->fields ? sizeof(mpm_real) : k == w->fields ? 1 : sizeof(int32_t);
+        s = mpm_want(blob[k].bytes == (size_t)p->count * size, f, blob[k].name, (mpm_real)(blob[k].bytes / size), -1);
+    }
+    for (i = 0; i < p->count && s == MPM_OK; i++) {
+        if ((s = mpm_want(p->mass[i] > 0, f, "mass of point", p->mass[i], i)) != MPM_OK) break;
+        if ((s = mpm_want(p->density[i] > 0, f, "density of point", p->density[i], i)) != MPM_OK) break;
+        s = mpm_want(p->id[i] >= 0, f, "id of point", (mpm_real)p->id[i], i);
+    }
+    return s;
+}
+
+MPM_API mpm_status mpm_restored(mpm_world *w, const mpm_blob *blob)
+{
+    mpm_status s = mpm__restored_counts(w, &w->fault);
+    int32_t b;
+    if (s == MPM_OK) s = mpm__restored_points(w, blob, &w->fault);
+    mpm__grid_reset(w);
+    if (s == MPM_OK) return s;
+    w->points.count = 0;
+    for (b = 0; b < w->bodies; b++) w->body[b].first = w->body[b].count = w->body[b].active = 0;
+    return s;
 }
 
 /* ---- small tools --------------------------------------------------------------------------- */

@@ -101,10 +101,11 @@ typedef struct mpm_draw_canvas {
     void *memory;        /* to be freed, or NULL when it is the caller's */
 } mpm_draw_canvas;
 
-/* Memory needed for width x height pixels; 0 when that is out of range (1 .. 16384 each). */
+/* Memory needed for width x height pixels; 0 when that is out of range (1 .. 16384 each).
+   Test: 41_draw "canvas". */
 MPM_API size_t mpm_draw_canvas_bytes(int width, int height);
 /* A white canvas in the caller's memory, or in allocated memory when `memory` is NULL.
-   MPM_ERR_ARGUMENT, MPM_ERR_MEMORY. Test: 41_draw "png". */
+   MPM_ERR_ARGUMENT, MPM_ERR_MEMORY. Test: 41_draw "canvas". */
 MPM_API mpm_status mpm_draw_canvas_init(mpm_draw_canvas *c, int width, int height, void *memory, size_t bytes);
 MPM_API void mpm_draw_canvas_free(mpm_draw_canvas *c);
 
@@ -121,7 +122,8 @@ MPM_API void mpm_draw_disc(mpm_draw_canvas *c, double x, double y, double radius
 typedef enum mpm_draw_align { MPM_DRAW_LEFT = 0, MPM_DRAW_CENTER = 1, MPM_DRAW_RIGHT = 2 } mpm_draw_align;
 
 /* Text with its baseline at y, in a stroke font of our own: ASCII and the signs for micro, degree,
-   minus, times, middle dot, superscript 2 and 3. Unknown characters show as an empty box. */
+   minus, times, middle dot, superscript 2 and 3. Unknown characters show as an empty box.
+   Test: 41_draw "drawing". */
 MPM_API void mpm_draw_text(mpm_draw_canvas *c, double x, double y, double size, mpm_draw_align align,
                            mpm_draw_color color, const char *text);
 MPM_API double mpm_draw_text_width(double size, const char *text);
@@ -132,7 +134,7 @@ typedef enum mpm_draw_map { MPM_DRAW_DEEP = 0, MPM_DRAW_HEAT = 1, MPM_DRAW_DIVER
 
 /* The colour at t, clamped to 0 .. 1; grey when t is not a number. Test: 41_draw "colours". */
 MPM_API mpm_draw_color mpm_draw_map_color(mpm_draw_map map, double t);
-/* Distinct colours for curves and bodies, repeating after eight. */
+/* Distinct colours for curves and bodies, repeating after eight. Test: 41_draw "colours". */
 MPM_API mpm_draw_color mpm_draw_series_color(int number);
 
 /* ---- numbers and ticks --------------------------------------------------------------------- */
@@ -160,10 +162,10 @@ MPM_API int mpm_draw_ticks(double low, double high, int is_log, int want, mpm_dr
 /* Figures are drawn into a part of a canvas, so that any of them can share one picture. */
 typedef struct mpm_draw_rect { double x, y, width, height; } mpm_draw_rect;
 
-/* Tile `number` (row by row from the top left) of a canvas split into columns x rows. */
+/* Tile `number` (row by row from the top left) of a canvas split into columns x rows. Test: 41_draw "cut". */
 MPM_API mpm_draw_rect mpm_draw_tile(const mpm_draw_canvas *c, int columns, int rows, int number);
 
-/* A horizontal colour bar over the width of `where`, with ticks and its label below. */
+/* A horizontal colour bar over the width of `where`, with ticks and its label below. Test: 41_draw "colour bar". */
 MPM_API void mpm_draw_color_bar(mpm_draw_canvas *c, mpm_draw_rect where, mpm_draw_map map, double low, double high,
                                 const char *label);
 
@@ -173,6 +175,7 @@ typedef enum mpm_draw_style { MPM_DRAW_SMOOTH = 0, MPM_DRAW_NEAREST = 1 } mpm_dr
 
 /* A cut through a set of points: those within half_thickness of a plane normal to an axis. */
 typedef struct mpm_draw_cut_desc {
+    unsigned mark;          /* set by mpm_draw_cut_desc_default */
     size_t count;           /* points */
     const mpm_real *x[3];   /* positions [length]; a NULL axis counts as zero */
     const mpm_real *value;  /* colour; NULL colours by body */
@@ -198,10 +201,10 @@ typedef struct mpm_draw_cut_desc {
     int ticks;              /* 1: coordinates along the frame instead of a scale bar */
 } mpm_draw_cut_desc;
 
-/* normal 1, scale 1, map DEEP, style SMOOTH; count, x and spacing must be set ... */
+/* normal 1, scale 1, map DEEP, style SMOOTH; count, x and spacing must be set ... Test: 41_draw "cut". */
 MPM_API mpm_draw_cut_desc mpm_draw_cut_desc_default(void);
 /* ... or taken from a world, with `value` one of its point arrays, for instance
-   world->points.plastic_strain (NULL: coloured by body). */
+   world->points.plastic_strain (NULL: coloured by body). Test: 41_draw "world". */
 MPM_API mpm_draw_cut_desc mpm_draw_cut_of(const mpm_world *world, const mpm_real *value);
 
 /* Draws the cut into `where`. MPM_ERR_ARGUMENT (the fault names the field) when something needed is
@@ -214,6 +217,7 @@ MPM_API mpm_status mpm_draw_cuts(mpm_draw_canvas *c, const mpm_draw_cut_desc *cu
 
 /* Discs in a plane, coloured by value: plumes, deposit patterns, correlations. */
 typedef struct mpm_draw_scatter_desc {
+    unsigned mark;           /* set by mpm_draw_scatter_desc_default */
     size_t count;
     const mpm_real *x, *y;
     const mpm_real *value;   /* colour; NULL: one colour */
@@ -227,7 +231,7 @@ typedef struct mpm_draw_scatter_desc {
     const char *x_label, *y_label;
 } mpm_draw_scatter_desc;
 
-/* dot 5, equal 1, scale 1. */
+/* dot 5, equal 1, scale 1. Test: 41_draw "scatter and plot". */
 MPM_API mpm_draw_scatter_desc mpm_draw_scatter_desc_default(void);
 /* Errors as for the cut. Test: 41_draw "scatter and plot". */
 MPM_API mpm_status mpm_draw_scatter(mpm_draw_canvas *c, mpm_draw_rect where, const mpm_draw_scatter_desc *d,
@@ -245,6 +249,7 @@ typedef struct mpm_draw_curve {
 } mpm_draw_curve;
 
 typedef struct mpm_draw_plot_desc {
+    unsigned mark;        /* set by mpm_draw_plot_desc_default */
     const mpm_draw_curve *curves;
     int curve_count;
     double window[4];     /* xmin, xmax, ymin, ymax; a pair of zeros fits that axis */
@@ -252,7 +257,7 @@ typedef struct mpm_draw_plot_desc {
     const char *title, *note, *x_label, *y_label; /* note: top right */
 } mpm_draw_plot_desc;
 
-/* Linear axes, fitted. */
+/* Linear axes, fitted. Test: 41_draw "scatter and plot". */
 MPM_API mpm_draw_plot_desc mpm_draw_plot_desc_default(void);
 /* MPM_ERR_ARGUMENT when there is nothing to draw. Test: 41_draw "scatter and plot". */
 MPM_API mpm_status mpm_draw_plot(mpm_draw_canvas *c, mpm_draw_rect where, const mpm_draw_plot_desc *d,
@@ -321,25 +326,28 @@ static inline double mpm__draw_leading(double size, int digits, int *exponent)
     return mpm__draw_nearest(size, digits - 1 - *exponent);
 }
 
+/* A finite value with its significant digits, the zeros behind left out. */
+static inline void mpm__draw_general(char text[64], double value, int digits)
+{
+    const int wanted = digits, negative = value < 0;
+    int exponent;
+    double whole = mpm__draw_leading(fabs(value), digits, &exponent);
+    for (; digits > 1 && fmod(whole, 10) < 0.5; digits--) whole /= 10;
+    if (exponent < -4 || exponent >= wanted) {
+        mpm__draw_digits(text, negative, whole, digits - 1);
+        text += strlen(text);
+        *text++ = 'e';
+        mpm__draw_fixed(text, exponent, 0);
+    } else if (exponent < digits) mpm__draw_digits(text, negative, whole, digits - 1 - exponent);
+    else mpm__draw_digits(text, negative, mpm__draw_nearest(whole, exponent - digits + 1), 0);
+}
+
 MPM_API size_t mpm_draw_number(char *buffer, size_t n, double value, int digits)
 {
     char text[64];
-    int exponent, wanted = digits;
-    double size = fabs(value), whole;
-    if (value != value) return mpm_append(buffer, n, 0, "nan");
-    if (value - value != 0 && value > 0) return mpm_append(buffer, n, 0, "inf");
-    if (value - value != 0) return mpm_append(buffer, n, 0, "-inf");
-    if (!(size > 1e-290)) return mpm_append(buffer, n, 0, "0");
-    whole = mpm__draw_leading(size, digits, &exponent);
-    for (; digits > 1 && fmod(whole, 10) < 0.5; digits--) whole /= 10;
-    if (exponent < -4 || exponent >= wanted) {
-        char *end = text;
-        mpm__draw_digits(text, value < 0, whole, digits - 1);
-        while (*end) end++;
-        *end++ = 'e';
-        mpm__draw_fixed(end, exponent, 0);
-    } else if (exponent < digits) mpm__draw_digits(text, value < 0, whole, digits - 1 - exponent);
-    else mpm__draw_digits(text, value < 0, mpm__draw_nearest(whole, exponent - digits + 1), 0);
+    if (value - value != 0) strcpy(text, value != value ? "nan" : value > 0 ? "inf" : "-inf");
+    else if (fabs(value) > 1e-290) mpm__draw_general(text, value, digits);
+    else strcpy(text, "0");
     return mpm_append(buffer, n, 0, text);
 }
 
@@ -1130,6 +1138,7 @@ MPM_API mpm_draw_cut_desc mpm_draw_cut_desc_default(void)
 {
     mpm_draw_cut_desc d;
     memset(&d, 0, sizeof d);
+    d.mark = MPM_MARK;
     d.normal = 1;
     d.scale = 1;
     d.length_scale = 1;
@@ -1149,6 +1158,8 @@ MPM_API mpm_draw_cut_desc mpm_draw_cut_of(const mpm_world *world, const mpm_real
 
 static inline mpm_status mpm__draw_cut_check(const mpm_draw_cut_desc *d, mpm_fault *fault)
 {
+    if (d->mark != MPM_MARK)
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_draw_cut_desc_default)", (mpm_real)d->mark, -1);
     if (d->count < 1) return mpm_fail(fault, MPM_ERR_ARGUMENT, "count", 0, -1);
     if (!(d->spacing > 0) && !(d->world && d->spacing >= 0))
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "spacing", (mpm_real)d->spacing, -1);
@@ -1553,6 +1564,7 @@ MPM_API mpm_draw_scatter_desc mpm_draw_scatter_desc_default(void)
 {
     mpm_draw_scatter_desc d;
     memset(&d, 0, sizeof d);
+    d.mark = MPM_MARK;
     d.dot = 5;
     d.equal = 1;
     d.scale = 1;
@@ -1585,6 +1597,9 @@ MPM_API mpm_status mpm_draw_scatter(mpm_draw_canvas *c, mpm_draw_rect where, con
     mpm_draw_rect bar;
     double scale;
     size_t i, n;
+    if (d->mark != MPM_MARK)
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_draw_scatter_desc_default)",
+                        (mpm_real)d->mark, -1);
     if (d->count < 1 || !d->x || !d->y)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "points of the scatter plot", (mpm_real)d->count, -1);
     dots = (mpm__draw_dot *)MPM_MALLOC(d->count * sizeof *dots);
@@ -1627,6 +1642,7 @@ MPM_API mpm_draw_plot_desc mpm_draw_plot_desc_default(void)
 {
     mpm_draw_plot_desc d;
     memset(&d, 0, sizeof d);
+    d.mark = MPM_MARK;
     return d;
 }
 
@@ -1767,6 +1783,8 @@ MPM_API mpm_status mpm_draw_plot(mpm_draw_canvas *c, mpm_draw_rect where, const 
     mpm__draw_furniture f = {NULL, NULL, NULL, NULL, 1, 0, 0};
     mpm__draw_axes a;
     int k;
+    if (d->mark != MPM_MARK)
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_draw_plot_desc_default)", (mpm_real)d->mark, -1);
     if (!mpm__draw_plot_range(d, 0, &a) || !mpm__draw_plot_range(d, 1, &a))
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "points of the curves", 0, -1);
     f.title = d->title;

@@ -32,12 +32,28 @@
            return mpm_io_vtu("out/two.vtu", &d, &fault) < 0;
        }
 
+   A FORMAT OF YOUR OWN
+     is made of the same routines as those here, and needs no change to this file:
+       mpm_status write_xyz(const char *path, const mpm_points *p, mpm_fault *fault) {
+           mpm_io_file f;
+           mpm_status s = mpm_io_open(&f, path, fault);
+           int32_t i;
+           int a;
+           for (i = 0; i < p->count; i++)
+               for (a = 0; a < 3; a++) {
+                   mpm_io_put_real(&f, p->x[a][i]);
+                   mpm_io_put(&f, a < 2 ? " " : "\n");
+               }
+           return s < 0 ? s : mpm_io_close(&f, fault);
+       }
+
    CONTENTS
-     messages      mpm_io_fault_text, mpm_io_number_text, mpm_io_progress_text
-     folders       mpm_io_make_directory
+     messages      mpm_io_fault_text, _number_text, _decimal_point, _progress_text
+     files         mpm_io_make_directory, mpm_io_open, _put, _put_bytes, _put_number, _put_real,
+                   _put_integer, _close, _drop
      text files    mpm_io_json_*, mpm_io_csv_*
      ParaView      mpm_io_scalar .. mpm_io_int32, mpm_io_vtu, mpm_io_body_numbers, mpm_io_pvd_begin, mpm_io_pvd_add
-     restart       mpm_io_checkpoint_write, mpm_io_checkpoint_read, mpm_io_world_blobs
+     restart       mpm_io_checkpoint_write, _checkpoint_read, _world_text, _line, _line_number
      pictures      mpm_io_png
 
    CONFIGURATION (define before including)
@@ -62,6 +78,15 @@
 #define mpm_io_number_text mpm_io_number_text_f32
 #define mpm_io_progress_text mpm_io_progress_text_f32
 #define mpm_io_make_directory mpm_io_make_directory_f32
+#define mpm_io_decimal_point mpm_io_decimal_point_f32
+#define mpm_io_open mpm_io_open_f32
+#define mpm_io_put mpm_io_put_f32
+#define mpm_io_put_bytes mpm_io_put_bytes_f32
+#define mpm_io_put_number mpm_io_put_number_f32
+#define mpm_io_put_real mpm_io_put_real_f32
+#define mpm_io_put_integer mpm_io_put_integer_f32
+#define mpm_io_close mpm_io_close_f32
+#define mpm_io_drop mpm_io_drop_f32
 #define mpm_io_json_begin mpm_io_json_begin_f32
 #define mpm_io_json_number mpm_io_json_number_f32
 #define mpm_io_json_real mpm_io_json_real_f32
@@ -89,7 +114,9 @@
 #define mpm_io_pvd_add mpm_io_pvd_add_f32
 #define mpm_io_checkpoint_write mpm_io_checkpoint_write_f32
 #define mpm_io_checkpoint_read mpm_io_checkpoint_read_f32
-#define mpm_io_world_blobs mpm_io_world_blobs_f32
+#define mpm_io_world_text mpm_io_world_text_f32
+#define mpm_io_line mpm_io_line_f32
+#define mpm_io_line_number mpm_io_line_number_f32
 #define mpm_io_png mpm_io_png_f32
 #define mpm_io_body_numbers mpm_io_body_numbers_f32
 #endif
@@ -106,14 +133,18 @@ extern "C" {
 
 /* Writes "meaning: field = value (index 12)" into buffer[n], cut to fit and always terminated when
    n > 0. The index (a point, a body or an axis: the field's name says which) is left out when
-   negative; "= value" is left out for MPM_ERR_FILE, where the field says what of the file was
-   wrong. Returns the length written. Test: 40_io.c "messages". */
+   negative; "= value" is left out for MPM_ERR_FILE and MPM_ERR_VERSION, where the field says what
+   of the file was wrong. Returns the length written. Test: 40_io "messages". */
 MPM_API size_t mpm_io_fault_text(char *buffer, size_t n, const mpm_fault *fault);
 
 /* Writes `value` into buffer[n] (32 bytes always suffice) with the fewest of 15 to 17 digits that
    bring it back exactly, and a decimal point under every locale. Not finite: "nan", "inf" or
-   "-inf". Returns the length written. Test: 40_io.c "numbers". */
+   "-inf". Returns the length written. Test: 40_io "numbers". */
 MPM_API size_t mpm_io_number_text(char *buffer, size_t n, double value);
+
+/* Puts a point where printf put the decimal separator of the locale, whatever its bytes: between the
+   digits of a printed number there is nothing else. Test: 40_io "numbers". */
+MPM_API void mpm_io_decimal_point(char *text);
 
 /* Where a run stands. Counts are of this run: after a restart set first_step. */
 typedef struct mpm_io_progress {
@@ -126,21 +157,38 @@ typedef struct mpm_io_progress {
 
 /* Writes "step 1200/9900  12 %  t = 9.7 ns  1.2e6 points/s  left 0:43" into buffer[n]. The rate and
    the time left appear once a step is done and time has passed. Returns the length written.
-   Test: 40_io.c "messages". */
+   Test: 40_io "messages". */
 MPM_API size_t mpm_io_progress_text(char *buffer, size_t n, const mpm_io_progress *p);
 
-/* ---- folders ------------------------------------------------------------------------------- */
+/* ---- folders and files --------------------------------------------------------------------- */
 
 /* Makes the folder `path` and every missing folder above it. One that exists is fine.
    Returns MPM_ERR_FILE when it cannot be made (or a file is in its place), MPM_ERR_ARGUMENT for an
-   empty or too long path. `fault` may be NULL here and below. Test: 40_io.c "folders". */
+   empty or too long path. `fault` may be NULL here and below. Test: 40_io "folders". */
 MPM_API mpm_status mpm_io_make_directory(const char *path, mpm_fault *fault);
 
-/* A file being written: private to the routines below, here because they are held by value. */
+/* A file being written: what all formats below are made of, and yours. */
 typedef struct mpm_io_file {
-    FILE *stream;           /* NULL once something failed */
-    char path[MPM_IO_PATH]; /* the final name; the stream writes to <path>.part */
+    FILE *stream;           /* of <path>.part; NULL if it could not be opened */
+    char path[MPM_IO_PATH]; /* the final name */
 } mpm_io_file;
+
+/* Begins a file. MPM_ERR_FILE: it cannot be made; MPM_ERR_ARGUMENT: no path, or one too long.
+   Test: 40_io "failures", "format". */
+MPM_API mpm_status mpm_io_open(mpm_io_file *f, const char *path, mpm_fault *fault);
+/* Adds text, bytes, a number of double precision, an mpm_real or a whole number to it, numbers with
+   the fewest digits that bring them back; nothing happens if the file is not open. No checking is
+   needed in between: an error sticks, and mpm_io_close finds it. Test: 40_io "format". */
+MPM_API void mpm_io_put(mpm_io_file *f, const char *text);
+MPM_API void mpm_io_put_bytes(mpm_io_file *f, const void *data, size_t n);
+MPM_API void mpm_io_put_number(mpm_io_file *f, double value);
+MPM_API void mpm_io_put_real(mpm_io_file *f, mpm_real value);
+MPM_API void mpm_io_put_integer(mpm_io_file *f, long long value);
+/* Gives the file its name. MPM_ERR_FILE when it is not open or any write failed: then nothing of it
+   is left, and a file that had the name before is as it was. Test: 40_io "format". */
+MPM_API mpm_status mpm_io_close(mpm_io_file *f, mpm_fault *fault);
+/* Instead of close: gives the file up. Test: 40_io "format". */
+MPM_API void mpm_io_drop(mpm_io_file *f);
 
 /* ---- JSON ---------------------------------------------------------------------------------- */
 
@@ -154,20 +202,20 @@ typedef struct mpm_io_json {
 } mpm_io_json;
 
 /* Starts an object whose first key is "mpm_version". Returns MPM_ERR_FILE when the file cannot be
-   made, MPM_ERR_ARGUMENT for a bad path. Test: 40_io.c "json". */
+   made, MPM_ERR_ARGUMENT for a bad path. Test: 40_io "json". */
 MPM_API mpm_status mpm_io_json_begin(mpm_io_json *j, const char *path, mpm_fault *fault);
 /* key: value. A number that is not finite becomes null; `real` prints the digits an mpm_real needs,
-   `number` those of a double. */
+   `number` those of a double. Test: 40_io "json". */
 MPM_API void mpm_io_json_number(mpm_io_json *j, const char *key, double value);
 MPM_API void mpm_io_json_real(mpm_io_json *j, const char *key, mpm_real value);
 MPM_API void mpm_io_json_integer(mpm_io_json *j, const char *key, long long value);
 MPM_API void mpm_io_json_bool(mpm_io_json *j, const char *key, int value);
 MPM_API void mpm_io_json_string(mpm_io_json *j, const char *key, const char *value);
-/* key: { ... } - the pairs between open and close belong to the inner object. */
+/* key: { ... } - the pairs between open and close belong to the inner object. Test: 40_io "json". */
 MPM_API void mpm_io_json_open(mpm_io_json *j, const char *key);
 MPM_API void mpm_io_json_close(mpm_io_json *j);
 /* Closes whatever is open and gives the file its name. MPM_ERR_FILE when any write failed,
-   MPM_ERR_ARGUMENT when open and close did not match: then there is no file. */
+   MPM_ERR_ARGUMENT when open and close did not match: then there is no file. Test: 40_io "json". */
 MPM_API mpm_status mpm_io_json_end(mpm_io_json *j, mpm_fault *fault);
 
 /* ---- CSV ----------------------------------------------------------------------------------- */
@@ -181,21 +229,21 @@ typedef struct mpm_io_csv {
 } mpm_io_csv;
 
 /* Starts a table. `columns` is the header line: names with commas between. A note other than NULL
-   comes first, as a line "# mpm.h <version>: <note>". Errors as for JSON. Test: 40_io.c "csv". */
+   comes first, as a line "# mpm.h <version>: <note>". Errors as for JSON. Test: 40_io "csv". */
 MPM_API mpm_status mpm_io_csv_begin(mpm_io_csv *t, const char *path, const char *columns,
                                     const char *note, mpm_fault *fault);
 /* The next cell: a number (not finite: nan, inf, -inf), a whole number, or text (quoted when it
-   has to be). After the last column the line ends by itself. */
+   has to be). After the last column the line ends by itself. Test: 40_io "csv". */
 MPM_API void mpm_io_csv_real(mpm_io_csv *t, mpm_real value);
 MPM_API void mpm_io_csv_integer(mpm_io_csv *t, long long value);
 MPM_API void mpm_io_csv_text(mpm_io_csv *t, const char *value);
-/* A whole row at once: values[columns]. */
+/* A whole row at once: values[columns]. Test: 40_io "csv". */
 MPM_API void mpm_io_csv_row(mpm_io_csv *t, const mpm_real *values);
 /* Gives the file its name. MPM_ERR_FILE when a write failed, MPM_ERR_ARGUMENT when the last row is
-   not full: then there is no file. */
+   not full: then there is no file. Test: 40_io "csv". */
 MPM_API mpm_status mpm_io_csv_end(mpm_io_csv *t, mpm_fault *fault);
 /* Instead of end: gives the table up, even in the middle of a row or after an error. What is written so
-   far is removed; a file that had the name before stays as it was. Test: 40_io.c "dropped". */
+   far is removed; a file that had the name before stays as it was. Test: 40_io "dropped". */
 MPM_API void mpm_io_csv_drop(mpm_io_csv *t);
 
 /* ---- ParaView ------------------------------------------------------------------------------ */
@@ -212,7 +260,7 @@ typedef struct mpm_io_field {
     const int32_t *integers;  /* one component of ids or body numbers, or NULL */
 } mpm_io_field;
 
-/* Fields from their arrays. Test: 40_io.c "vtu". */
+/* Fields from their arrays. Test: 40_io "vtu". */
 MPM_API mpm_io_field mpm_io_scalar(const char *name, const mpm_real *data, double scale);
 MPM_API mpm_io_field mpm_io_vector(const char *name, const mpm_real *x, const mpm_real *y,
                                    const mpm_real *z, double scale);
@@ -224,6 +272,7 @@ MPM_API mpm_io_field mpm_io_int32(const char *name, const int32_t *integers);
 
 /* Points and what to write of them. */
 typedef struct mpm_io_vtu_desc {
+    unsigned mark;              /* set by mpm_io_vtu_desc_default */
     size_t count;               /* points, at most 2^31 - 1 */
     const mpm_real *x[3];       /* positions [length]; a NULL axis is written as zero */
     double scale;               /* of positions */
@@ -234,56 +283,56 @@ typedef struct mpm_io_vtu_desc {
     const char *note;           /* kept in a comment: what made this file; or NULL */
 } mpm_io_vtu_desc;
 
-/* No points, no fields, scale 1, time 0. */
+/* No points, no fields, scale 1, time 0. Test: 40_io "vtu". */
 MPM_API mpm_io_vtu_desc mpm_io_vtu_desc_default(void);
 
 /* Writes a VTK XML UnstructuredGrid (.vtu) of one vertex per point, data appended raw.
-   MPM_ERR_ARGUMENT for a field without data, name or components; MPM_ERR_FILE. Test: "vtu". */
+   MPM_ERR_ARGUMENT for a field without data, name or components; MPM_ERR_FILE. Test: 40_io "vtu". */
 MPM_API mpm_status mpm_io_vtu(const char *path, const mpm_io_vtu_desc *d, mpm_fault *fault);
 
-/* numbers[world->points.count]: the body of each point, -1 where it is retired. Test: "vtu". */
+/* numbers[world->points.count]: the body of each point, -1 where it is retired. Test: 40_io "vtu". */
 MPM_API void mpm_io_body_numbers(const mpm_world *world, int32_t *numbers);
 
 /* A time series (.pvd): begin writes an empty one, add appends a frame, given as the name of its
    .vtu relative to the folder of the .pvd. The file is complete after every call. A frame of the
    same name is replaced, so that a restarted run may go on with the series it finds; a missing
-   .pvd is begun. MPM_ERR_FILE when it cannot be written or is not one of ours. Test: "pvd". */
+   .pvd is begun. MPM_ERR_FILE when it cannot be written or is not one of ours. Test: 40_io "pvd". */
 MPM_API mpm_status mpm_io_pvd_begin(const char *path, mpm_fault *fault);
 MPM_API mpm_status mpm_io_pvd_add(const char *path, const char *frame, double time,
                                   mpm_fault *fault);
 
 /* ---- checkpoints --------------------------------------------------------------------------- */
 
-/* A named stretch of memory. Its bits are stored as they are; a struct that holds pointers must not
-   be among them, or its pointers must be set again after reading. */
-typedef struct mpm_io_blob {
-    const char *name; /* shorter than 64 bytes */
-    size_t bytes;
-    void *data;       /* read from when writing, written to when reading */
-} mpm_io_blob;
+/* A checkpoint holds blobs (mpm.h) and, as lines of text, what they are of: whatever must be the same for a run
+   that goes on from them. The head of the file can be read with any viewer of text.
 
-/* Writes blobs[count] with version, real size, byte order and a CRC-32 over everything, so that a
-   restart is bitwise. Returns MPM_ERR_FILE or MPM_ERR_ARGUMENT. Test: 40_io.c "checkpoint". */
-MPM_API mpm_status mpm_io_checkpoint_write(const char *path, const mpm_io_blob *blobs, int count,
+   Writes text (NULL: none) and blob[count] with version, real size, byte order and a CRC-32 over
+   everything, so that a restart is bitwise. MPM_ERR_FILE, MPM_ERR_ARGUMENT. Test: 40_io "checkpoint". */
+MPM_API mpm_status mpm_io_checkpoint_write(const char *path, const char *text, const mpm_blob *blob, int count,
                                            mpm_fault *fault);
-/* Reads them back: the same names and sizes in the same order. All is verified before the first
-   blob is changed. MPM_ERR_VERSION: written by another version of mpm.h, real type or byte order;
-   MPM_ERR_FILE: missing, damaged, or holding other blobs (the fault tells which). */
-MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const mpm_io_blob *blobs, int count,
+/* Reads them back: the same names in the same order, of sizes that fit. All is verified before the first byte is
+   changed; what the numbers say is for mpm_restored, mpm_spray_restored to check.
+   MPM_ERR_VERSION: by another version of mpm.h, real type or byte order, or of another text: then fault.field is
+   the first line of yours that the file has not, fault.index its number, from 1.
+   MPM_ERR_FILE: missing, damaged, or holding other blobs (the fault tells which). Test: 40_io "checkpoint". */
+MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const char *text, mpm_blob *blob, int count,
                                           mpm_fault *fault);
 
-/* A whole world: fills blobs[MPM_IO_WORLD_BLOBS + world->bodies] with everything its next step
-   depends on and returns their number; append blobs of your own behind them. To restart, set the
-   world up as before - the same description, the same bodies in the same order - and read.
-   Test: 40_io.c "restart": the run goes on bit for bit. */
-#define MPM_IO_WORLD_BLOBS 12
-MPM_API int mpm_io_world_blobs(mpm_world *world, mpm_io_blob *blobs);
+/* A world's description as such a text, into buffer[n], cut to fit: grid, sides, contact rules and bodies, one
+   "name value" a line; 1500 bytes and 800 for each body suffice. Materials are known to you alone: add lines of
+   theirs, and of the time step, behind the length that is returned. Test: 40_io "restart". */
+MPM_API size_t mpm_io_world_text(char *buffer, size_t n, const mpm_world *world);
+
+/* Adds a line "name value" behind the `used` characters in buffer[n], cut to fit. Returns the new length.
+   Test: 40_io "checkpoint". */
+MPM_API size_t mpm_io_line(char *buffer, size_t n, size_t used, const char *name, const char *value);
+MPM_API size_t mpm_io_line_number(char *buffer, size_t n, size_t used, const char *name, double value);
 
 /* ---- PNG ----------------------------------------------------------------------------------- */
 
 /* Writes pixels as PNG: 3 width height bytes, red green blue, row by row from the top; `note` (or NULL) is
    kept in it as its description. MPM_ERR_ARGUMENT for sizes out of range (1 .. 16384 each), MPM_ERR_FILE,
-   MPM_ERR_MEMORY. Test: 40_io.c "png". */
+   MPM_ERR_MEMORY. Test: 40_io "png". */
 MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int width, int height,
                               const char *note, mpm_fault *fault);
 
@@ -323,9 +372,7 @@ extern "C" {
 
 /* ---- messages ------------------------------------------------------------------------------ */
 
-/* Puts a point where the locale put its decimal separator, whatever its bytes: between the digits
-   of a printed number there is nothing else. */
-static inline void mpm__io_decimal_point(char *text)
+MPM_API void mpm_io_decimal_point(char *text)
 {
     char *from = text;
     size_t length;
@@ -349,7 +396,7 @@ static inline size_t mpm__io_print(char *buffer, size_t n, double value, int mos
         back = strtod(text, NULL); /* same locale as snprintf */
         if (single ? (float)back == (float)value : back >= value && back <= value) break;
     }
-    mpm__io_decimal_point(text);
+    mpm_io_decimal_point(text);
     return mpm_append(buffer, n, 0, text);
 }
 
@@ -369,7 +416,7 @@ static inline void mpm__io_short(char *buffer, size_t n, double value, int digit
 {
     char text[64], *e;
     snprintf(text, sizeof text, "%.*g", digits, value);
-    if (value - value == 0) mpm__io_decimal_point(text);
+    if (value - value == 0) mpm_io_decimal_point(text);
     e = strchr(text, 'e');
     if (e && value - value == 0) {
         long power = strtol(e + 1, NULL, 10);
@@ -381,11 +428,12 @@ static inline void mpm__io_short(char *buffer, size_t n, double value, int digit
 MPM_API size_t mpm_io_fault_text(char *buffer, size_t n, const mpm_fault *fault)
 {
     char number[40];
-    size_t used = mpm_append(buffer, n, 0, mpm_status_text(fault->status));
+    size_t used = mpm_append(buffer, n, 0, mpm_status_text(fault->status)), room;
     if (fault->field) {
         used = mpm_append(buffer, n, used, ": ");
-        used = mpm_append(buffer, n, used, fault->field);
-        if (fault->status != MPM_ERR_FILE) {
+        room = used + strcspn(fault->field, "\n") + 1; /* a line of a text ends there */
+        used = mpm_append(buffer, room < n ? room : n, used, fault->field);
+        if (fault->status != MPM_ERR_FILE && fault->status != MPM_ERR_VERSION) {
             mpm__io_print_real(number, sizeof number, fault->value);
             used = mpm_append(buffer, n, used, " = ");
             used = mpm_append(buffer, n, used, number);
@@ -455,7 +503,7 @@ static inline void mpm__io_part_name(char part[MPM_IO_PATH + 8], const char *pat
     mpm_append(part, MPM_IO_PATH + 8, used, ".part");
 }
 
-static inline mpm_status mpm__io_open(mpm_io_file *f, const char *path, mpm_fault *fault)
+MPM_API mpm_status mpm_io_open(mpm_io_file *f, const char *path, mpm_fault *fault)
 {
     char part[MPM_IO_PATH + 8];
     size_t length = path ? strlen(path) : 0;
@@ -469,8 +517,7 @@ static inline mpm_status mpm__io_open(mpm_io_file *f, const char *path, mpm_faul
     return f->stream ? MPM_OK : mpm_fail(fault, MPM_ERR_FILE, "path: cannot be made", 0, -1);
 }
 
-/* Closes the file and, if `keep` and every write went well, gives it its final name. */
-static inline mpm_status mpm__io_close(mpm_io_file *f, int keep, mpm_fault *fault)
+MPM_API mpm_status mpm_io_close(mpm_io_file *f, mpm_fault *fault)
 {
     char part[MPM_IO_PATH + 8];
     int good;
@@ -480,31 +527,52 @@ static inline mpm_status mpm__io_close(mpm_io_file *f, int keep, mpm_fault *faul
     good = fclose(f->stream) == 0 && good;
     f->stream = NULL;
 #ifdef _WIN32
-    if (keep && good) remove(f->path); /* rename does not replace there */
+    if (good) remove(f->path); /* rename does not replace there */
 #endif
-    if (keep && good && rename(part, f->path) == 0) return MPM_OK;
+    if (good && rename(part, f->path) == 0) return MPM_OK;
     remove(part);
-    if (!keep) return MPM_OK;
     return mpm_fail(fault, MPM_ERR_FILE, good ? "path: cannot be renamed" : "path: writing failed", 0, -1);
 }
 
-static inline void mpm__io_put(mpm_io_file *f, const char *text)
+MPM_API void mpm_io_drop(mpm_io_file *f)
+{
+    char part[MPM_IO_PATH + 8];
+    if (!f->stream) return;
+    mpm__io_part_name(part, f->path);
+    fclose(f->stream);
+    f->stream = NULL;
+    remove(part);
+}
+
+MPM_API void mpm_io_put(mpm_io_file *f, const char *text)
 {
     if (f->stream) fputs(text, f->stream);
 }
 
-static inline void mpm__io_put_number(mpm_io_file *f, double value)
+MPM_API void mpm_io_put_bytes(mpm_io_file *f, const void *data, size_t n)
+{
+    if (f->stream && n > 0) fwrite(data, 1, n, f->stream);
+}
+
+MPM_API void mpm_io_put_number(mpm_io_file *f, double value)
 {
     char text[40];
     mpm_io_number_text(text, sizeof text, value);
-    mpm__io_put(f, text);
+    mpm_io_put(f, text);
 }
 
-static inline void mpm__io_put_integer(mpm_io_file *f, long long value)
+MPM_API void mpm_io_put_real(mpm_io_file *f, mpm_real value)
+{
+    char text[40];
+    mpm__io_print_real(text, sizeof text, value);
+    mpm_io_put(f, text);
+}
+
+MPM_API void mpm_io_put_integer(mpm_io_file *f, long long value)
 {
     char text[40];
     snprintf(text, sizeof text, "%lld", value);
-    mpm__io_put(f, text);
+    mpm_io_put(f, text);
 }
 
 /* ---- JSON ---------------------------------------------------------------------------------- */
@@ -532,10 +600,10 @@ static inline void mpm__io_json_quoted(mpm_io_json *j, const char *text)
 static inline void mpm__io_json_key(mpm_io_json *j, const char *key)
 {
     int i;
-    mpm__io_put(&j->file, j->empty ? "\n" : ",\n");
-    for (i = 0; i < j->depth; i++) mpm__io_put(&j->file, "  ");
+    mpm_io_put(&j->file, j->empty ? "\n" : ",\n");
+    for (i = 0; i < j->depth; i++) mpm_io_put(&j->file, "  ");
     mpm__io_json_quoted(j, key ? key : "");
-    mpm__io_put(&j->file, ": ");
+    mpm_io_put(&j->file, ": ");
     j->empty = 0;
 }
 
@@ -543,9 +611,9 @@ MPM_API mpm_status mpm_io_json_begin(mpm_io_json *j, const char *path, mpm_fault
 {
     j->depth = 1;
     j->empty = 1;
-    j->status = mpm__io_open(&j->file, path, fault);
+    j->status = mpm_io_open(&j->file, path, fault);
     if (j->status < 0) return j->status;
-    mpm__io_put(&j->file, "{");
+    mpm_io_put(&j->file, "{");
     mpm_io_json_string(j, "mpm_version", MPM_VERSION);
     return MPM_OK;
 }
@@ -553,41 +621,40 @@ MPM_API mpm_status mpm_io_json_begin(mpm_io_json *j, const char *path, mpm_fault
 MPM_API void mpm_io_json_number(mpm_io_json *j, const char *key, double value)
 {
     mpm__io_json_key(j, key);
-    if (value - value != 0) mpm__io_put(&j->file, "null");
-    else mpm__io_put_number(&j->file, value);
+    if (value - value != 0) mpm_io_put(&j->file, "null");
+    else mpm_io_put_number(&j->file, value);
 }
 
 MPM_API void mpm_io_json_real(mpm_io_json *j, const char *key, mpm_real value)
 {
-    char text[40];
-    mpm__io_print_real(text, sizeof text, value);
     mpm__io_json_key(j, key);
-    mpm__io_put(&j->file, value - value != 0 ? "null" : text);
+    if (value - value != 0) mpm_io_put(&j->file, "null");
+    else mpm_io_put_real(&j->file, value);
 }
 
 MPM_API void mpm_io_json_integer(mpm_io_json *j, const char *key, long long value)
 {
     mpm__io_json_key(j, key);
-    mpm__io_put_integer(&j->file, value);
+    mpm_io_put_integer(&j->file, value);
 }
 
 MPM_API void mpm_io_json_bool(mpm_io_json *j, const char *key, int value)
 {
     mpm__io_json_key(j, key);
-    mpm__io_put(&j->file, value ? "true" : "false");
+    mpm_io_put(&j->file, value ? "true" : "false");
 }
 
 MPM_API void mpm_io_json_string(mpm_io_json *j, const char *key, const char *value)
 {
     mpm__io_json_key(j, key);
     if (value) mpm__io_json_quoted(j, value);
-    else mpm__io_put(&j->file, "null");
+    else mpm_io_put(&j->file, "null");
 }
 
 MPM_API void mpm_io_json_open(mpm_io_json *j, const char *key)
 {
     mpm__io_json_key(j, key);
-    mpm__io_put(&j->file, "{");
+    mpm_io_put(&j->file, "{");
     j->empty = 1;
     if (++j->depth > 8) j->status = MPM_ERR_ARGUMENT;
 }
@@ -596,20 +663,20 @@ MPM_API void mpm_io_json_close(mpm_io_json *j)
 {
     int i;
     if (--j->depth < 1) j->status = MPM_ERR_ARGUMENT;
-    mpm__io_put(&j->file, j->empty ? "" : "\n");
-    for (i = 0; i < j->depth && !j->empty; i++) mpm__io_put(&j->file, "  ");
-    mpm__io_put(&j->file, "}");
+    mpm_io_put(&j->file, j->empty ? "" : "\n");
+    for (i = 0; i < j->depth && !j->empty; i++) mpm_io_put(&j->file, "  ");
+    mpm_io_put(&j->file, "}");
     j->empty = 0;
 }
 
 MPM_API mpm_status mpm_io_json_end(mpm_io_json *j, mpm_fault *fault)
 {
     if (j->file.stream && (j->status < 0 || j->depth != 1)) {
-        mpm__io_close(&j->file, 0, NULL);
+        mpm_io_drop(&j->file);
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "depth of json object", (mpm_real)j->depth, -1);
     }
-    mpm__io_put(&j->file, "\n}\n");
-    return mpm__io_close(&j->file, 1, fault);
+    mpm_io_put(&j->file, "\n}\n");
+    return mpm_io_close(&j->file, fault);
 }
 
 /* ---- CSV ----------------------------------------------------------------------------------- */
@@ -620,43 +687,42 @@ MPM_API mpm_status mpm_io_csv_begin(mpm_io_csv *t, const char *path, const char 
     const char *p;
     t->columns = 1;
     t->cells = 0;
-    t->status = mpm__io_open(&t->file, path, fault);
+    t->status = mpm_io_open(&t->file, path, fault);
     if (t->status < 0) return t->status;
     for (p = columns; *p; p++) t->columns += *p == ',';
     if (note) {
-        mpm__io_put(&t->file, "# mpm.h " MPM_VERSION ": ");
+        mpm_io_put(&t->file, "# mpm.h " MPM_VERSION ": ");
         for (p = note; *p; p++) fputc(*p == '\n' || *p == '\r' ? ' ' : *p, t->file.stream);
-        mpm__io_put(&t->file, "\n");
+        mpm_io_put(&t->file, "\n");
     }
-    mpm__io_put(&t->file, columns);
-    mpm__io_put(&t->file, "\n");
+    mpm_io_put(&t->file, columns);
+    mpm_io_put(&t->file, "\n");
     return MPM_OK;
 }
 
 static inline void mpm__io_csv_cell(mpm_io_csv *t, const char *text)
 {
-    mpm__io_put(&t->file, text);
+    mpm_io_put(&t->file, text);
     t->cells = (t->cells + 1) % t->columns;
-    mpm__io_put(&t->file, t->cells == 0 ? "\n" : ",");
+    mpm_io_put(&t->file, t->cells == 0 ? "\n" : ",");
 }
 
 MPM_API void mpm_io_csv_real(mpm_io_csv *t, mpm_real value)
 {
-    char text[40];
-    mpm__io_print_real(text, sizeof text, value);
-    mpm__io_csv_cell(t, text);
+    mpm_io_put_real(&t->file, value);
+    mpm__io_csv_cell(t, "");
 }
 
 MPM_API void mpm_io_csv_integer(mpm_io_csv *t, long long value)
 {
-    mpm__io_put_integer(&t->file, value);
+    mpm_io_put_integer(&t->file, value);
     mpm__io_csv_cell(t, "");
 }
 
 MPM_API void mpm_io_csv_text(mpm_io_csv *t, const char *value)
 {
     int quote = strpbrk(value, ",\"\r\n") != NULL;
-    if (quote) mpm__io_put(&t->file, "\"");
+    if (quote) mpm_io_put(&t->file, "\"");
     for (; *value && t->file.stream; value++) {
         if (*value == '"') fputc('"', t->file.stream);
         fputc(*value, t->file.stream);
@@ -673,13 +739,13 @@ MPM_API void mpm_io_csv_row(mpm_io_csv *t, const mpm_real *values)
 MPM_API mpm_status mpm_io_csv_end(mpm_io_csv *t, mpm_fault *fault)
 {
     if (t->file.stream && t->cells != 0) {
-        mpm__io_close(&t->file, 0, NULL);
+        mpm_io_drop(&t->file);
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "cells in the last row", (mpm_real)t->cells, -1);
     }
-    return mpm__io_close(&t->file, 1, fault);
+    return mpm_io_close(&t->file, fault);
 }
 
-MPM_API void mpm_io_csv_drop(mpm_io_csv *t) { mpm__io_close(&t->file, 0, NULL); }
+MPM_API void mpm_io_csv_drop(mpm_io_csv *t) { mpm_io_drop(&t->file); }
 
 /* ---- ParaView ------------------------------------------------------------------------------ */
 
@@ -743,6 +809,7 @@ MPM_API mpm_io_vtu_desc mpm_io_vtu_desc_default(void)
     mpm_io_vtu_desc d;
     memset(&d, 0, sizeof d);
     d.scale = 1;
+    d.mark = MPM_MARK;
     return d;
 }
 
@@ -751,12 +818,12 @@ static inline void mpm__io_put_xml(mpm_io_file *f, const char *text)
 {
     for (; *text && f->stream; text++) {
         switch (*text) {
-        case '&': mpm__io_put(f, "&amp;"); break;
-        case '<': mpm__io_put(f, "&lt;"); break;
-        case '>': mpm__io_put(f, "&gt;"); break;
-        case '"': mpm__io_put(f, "&quot;"); break;
-        case '\'': mpm__io_put(f, "&apos;"); break;
-        case '-': mpm__io_put(f, text[1] == '-' ? "- " : "-"); break;
+        case '&': mpm_io_put(f, "&amp;"); break;
+        case '<': mpm_io_put(f, "&lt;"); break;
+        case '>': mpm_io_put(f, "&gt;"); break;
+        case '"': mpm_io_put(f, "&quot;"); break;
+        case '\'': mpm_io_put(f, "&apos;"); break;
+        case '-': mpm_io_put(f, text[1] == '-' ? "- " : "-"); break;
         default: fputc(*text, f->stream);
         }
     }
@@ -768,8 +835,8 @@ static inline void mpm__io_put_real(mpm_io_file *f, mpm_real value, double scale
     float single;
     if (scale < 1 || scale > 1) value = (mpm_real)((double)value * scale);
     single = (float)value;
-    if (float32) fwrite(&single, sizeof single, 1, f->stream);
-    else fwrite(&value, sizeof value, 1, f->stream);
+    if (float32) mpm_io_put_bytes(f, &single, sizeof single);
+    else mpm_io_put_bytes(f, &value, sizeof value);
 }
 
 /* The length in bytes of a field's values. */
@@ -785,8 +852,8 @@ static inline void mpm__io_field_values(mpm_io_file *file, const mpm_io_field *f
     static const int order[9] = {0, 1, 2, 5, 3, 4, 6, 7, 8}; /* xy before yz and xz */
     size_t p;
     int k;
-    if (f->bytes) fwrite(f->bytes, 1, count, file->stream);
-    else if (f->integers) fwrite(f->integers, 4, count, file->stream);
+    if (f->bytes) mpm_io_put_bytes(file, f->bytes, count);
+    else if (f->integers) mpm_io_put_bytes(file, f->integers, 4 * count);
     else
         for (p = 0; p < count; p++)
             for (k = 0; k < f->components; k++) {
@@ -800,21 +867,23 @@ static inline void mpm__io_field_values(mpm_io_file *file, const mpm_io_field *f
 static inline void mpm__io_data_tag(mpm_io_file *f, const char *type, const char *name,
                                     int components, uint64_t bytes, uint64_t *offset)
 {
-    mpm__io_put(f, "        <DataArray type=\"");
-    mpm__io_put(f, type);
-    mpm__io_put(f, "\" Name=\"");
+    mpm_io_put(f, "        <DataArray type=\"");
+    mpm_io_put(f, type);
+    mpm_io_put(f, "\" Name=\"");
     mpm__io_put_xml(f, name);
-    mpm__io_put(f, "\" NumberOfComponents=\"");
-    mpm__io_put_integer(f, components);
-    mpm__io_put(f, "\" format=\"appended\" offset=\"");
-    mpm__io_put_integer(f, (long long)*offset);
-    mpm__io_put(f, "\"/>\n");
+    mpm_io_put(f, "\" NumberOfComponents=\"");
+    mpm_io_put_integer(f, components);
+    mpm_io_put(f, "\" format=\"appended\" offset=\"");
+    mpm_io_put_integer(f, (long long)*offset);
+    mpm_io_put(f, "\"/>\n");
     *offset += 8 + bytes;
 }
 
 static inline mpm_status mpm__io_vtu_check(const mpm_io_vtu_desc *d, mpm_fault *fault)
 {
     int i, k;
+    if (d->mark != MPM_MARK)
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_io_vtu_desc_default)", (mpm_real)d->mark, -1);
     if (d->count > 2147483647u)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "count", (mpm_real)d->count, -1);
     if (d->field_count < 0 || (d->field_count > 0 && !d->fields))
@@ -846,31 +915,31 @@ static inline void mpm__io_vtu_head(mpm_io_file *f, const mpm_io_vtu_desc *d, si
     const char *type = real == 4 ? "Float32" : "Float64";
     uint64_t n = d->count, offset = 0;
     int i;
-    mpm__io_put(f, "<?xml version=\"1.0\"?>\n<!-- mpm.h " MPM_VERSION " ");
+    mpm_io_put(f, "<?xml version=\"1.0\"?>\n<!-- mpm.h " MPM_VERSION " ");
     if (d->note) mpm__io_put_xml(f, d->note);
-    mpm__io_put(f, " -->\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"");
-    mpm__io_put(f, mpm__io_little_endian() ? "LittleEndian" : "BigEndian");
-    mpm__io_put(f, "\" header_type=\"UInt64\">\n  <UnstructuredGrid>\n    <FieldData>\n"
+    mpm_io_put(f, " -->\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"");
+    mpm_io_put(f, mpm__io_little_endian() ? "LittleEndian" : "BigEndian");
+    mpm_io_put(f, "\" header_type=\"UInt64\">\n  <UnstructuredGrid>\n    <FieldData>\n"
                    "      <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\""
                    " format=\"ascii\">");
-    mpm__io_put_number(f, d->time);
-    mpm__io_put(f, "</DataArray>\n    </FieldData>\n    <Piece NumberOfPoints=\"");
-    mpm__io_put_integer(f, (long long)n);
-    mpm__io_put(f, "\" NumberOfCells=\"");
-    mpm__io_put_integer(f, (long long)n);
-    mpm__io_put(f, "\">\n      <Points>\n");
+    mpm_io_put_number(f, d->time);
+    mpm_io_put(f, "</DataArray>\n    </FieldData>\n    <Piece NumberOfPoints=\"");
+    mpm_io_put_integer(f, (long long)n);
+    mpm_io_put(f, "\" NumberOfCells=\"");
+    mpm_io_put_integer(f, (long long)n);
+    mpm_io_put(f, "\">\n      <Points>\n");
     mpm__io_data_tag(f, type, "Points", 3, 3 * n * real, &offset);
-    mpm__io_put(f, "      </Points>\n      <Cells>\n");
+    mpm_io_put(f, "      </Points>\n      <Cells>\n");
     mpm__io_data_tag(f, "Int32", "connectivity", 1, 4 * n, &offset);
     mpm__io_data_tag(f, "Int32", "offsets", 1, 4 * n, &offset);
     mpm__io_data_tag(f, "UInt8", "types", 1, n, &offset);
-    mpm__io_put(f, "      </Cells>\n      <PointData>\n");
+    mpm_io_put(f, "      </Cells>\n      <PointData>\n");
     for (i = 0; i < d->field_count; i++) {
         const mpm_io_field *a = &d->fields[i];
         mpm__io_data_tag(f, a->bytes ? "UInt8" : a->integers ? "Int32" : type, a->name,
                          a->components, mpm__io_field_bytes(a, d->count, real), &offset);
     }
-    mpm__io_put(f, "      </PointData>\n    </Piece>\n  </UnstructuredGrid>\n"
+    mpm_io_put(f, "      </PointData>\n    </Piece>\n  </UnstructuredGrid>\n"
                    "  <AppendedData encoding=\"raw\">\n_");
 }
 
@@ -881,22 +950,22 @@ static inline void mpm__io_vtu_body(mpm_io_file *f, const mpm_io_vtu_desc *d, si
     uint64_t bytes = mpm__io_field_bytes(&points, d->count, real);
     int32_t i, n = (int32_t)d->count;
     int k;
-    fwrite(&bytes, 8, 1, f->stream);
+    mpm_io_put_bytes(f, &bytes, sizeof bytes);
     mpm__io_field_values(f, &points, d->count, d->float32);
     for (k = 0; k < 2; k++) { /* connectivity 0 .. n - 1, then offsets 1 .. n */
         bytes = 4 * (uint64_t)d->count;
-        fwrite(&bytes, 8, 1, f->stream);
+        mpm_io_put_bytes(f, &bytes, sizeof bytes);
         for (i = 0; i < n; i++) {
             int32_t number = i + k;
-            fwrite(&number, 4, 1, f->stream);
+            mpm_io_put_bytes(f, &number, sizeof number);
         }
     }
     bytes = d->count;
-    fwrite(&bytes, 8, 1, f->stream);
+    mpm_io_put_bytes(f, &bytes, sizeof bytes);
     for (i = 0; i < n; i++) fputc(1, f->stream); /* VTK_VERTEX */
     for (k = 0; k < d->field_count; k++) {
         bytes = mpm__io_field_bytes(&d->fields[k], d->count, real);
-        fwrite(&bytes, 8, 1, f->stream);
+        mpm_io_put_bytes(f, &bytes, sizeof bytes);
         mpm__io_field_values(f, &d->fields[k], d->count, d->float32);
     }
 }
@@ -907,12 +976,12 @@ MPM_API mpm_status mpm_io_vtu(const char *path, const mpm_io_vtu_desc *d, mpm_fa
     size_t real = d->float32 ? sizeof(float) : sizeof(mpm_real);
     mpm_status status = mpm__io_vtu_check(d, fault);
     if (status < 0) return status;
-    status = mpm__io_open(&f, path, fault);
+    status = mpm_io_open(&f, path, fault);
     if (status < 0) return status;
     mpm__io_vtu_head(&f, d, real);
     mpm__io_vtu_body(&f, d, real);
-    mpm__io_put(&f, "\n  </AppendedData>\n</VTKFile>\n");
-    return mpm__io_close(&f, 1, fault);
+    mpm_io_put(&f, "\n  </AppendedData>\n</VTKFile>\n");
+    return mpm_io_close(&f, fault);
 }
 
 MPM_API void mpm_io_body_numbers(const mpm_world *world, int32_t *numbers)
@@ -932,10 +1001,10 @@ MPM_API void mpm_io_body_numbers(const mpm_world *world, int32_t *numbers)
 MPM_API mpm_status mpm_io_pvd_begin(const char *path, mpm_fault *fault)
 {
     mpm_io_file f;
-    mpm_status status = mpm__io_open(&f, path, fault);
+    mpm_status status = mpm_io_open(&f, path, fault);
     if (status < 0) return status;
-    mpm__io_put(&f, MPM__IO_PVD_HEAD MPM__IO_PVD_TAIL);
-    return mpm__io_close(&f, 1, fault);
+    mpm_io_put(&f, MPM__IO_PVD_HEAD MPM__IO_PVD_TAIL);
+    return mpm_io_close(&f, fault);
 }
 
 /* Copies the frames of an earlier file, all but the one of the same name. Each is one line that
@@ -949,7 +1018,7 @@ static inline int mpm__io_pvd_copy(mpm_io_file *to, FILE *from, const char *endi
         if (strstr(line, "</Collection>")) return in_collection;
         if (in_collection && line[length - 1] != '\n') return 0;
         if (in_collection && (length < tail || strcmp(line + length - tail, ending) != 0))
-            mpm__io_put(to, line);
+            mpm_io_put(to, line);
         if (strstr(line, "<Collection>")) in_collection = 1;
     }
     return 0;
@@ -965,27 +1034,27 @@ MPM_API mpm_status mpm_io_pvd_add(const char *path, const char *frame, double ti
     mpm_status status;
     if (!frame || frame[0] == 0 || strlen(frame) >= MPM_IO_PATH || strpbrk(frame, "<>&\"'\n"))
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "name of frame", 0, -1);
-    status = mpm__io_open(&f, path, fault);
+    status = mpm_io_open(&f, path, fault);
     if (status < 0) return status;
     used = mpm_append(ending, sizeof ending, 0, "file=\"");
     used = mpm_append(ending, sizeof ending, used, frame);
     mpm_append(ending, sizeof ending, used, "\"/>\n");
-    mpm__io_put(&f, MPM__IO_PVD_HEAD);
+    mpm_io_put(&f, MPM__IO_PVD_HEAD);
     old = fopen(path, "rb");
     if (old) {
         int good = mpm__io_pvd_copy(&f, old, ending);
         fclose(old);
         if (!good) {
-            mpm__io_close(&f, 0, NULL);
+            mpm_io_drop(&f);
             return mpm_fail(fault, MPM_ERR_FILE, "path: not a series of ours", 0, -1);
         }
     }
-    mpm__io_put(&f, "    <DataSet timestep=\"");
-    mpm__io_put_number(&f, time);
-    mpm__io_put(&f, "\" part=\"0\" ");
-    mpm__io_put(&f, ending);
-    mpm__io_put(&f, MPM__IO_PVD_TAIL);
-    return mpm__io_close(&f, 1, fault);
+    mpm_io_put(&f, "    <DataSet timestep=\"");
+    mpm_io_put_number(&f, time);
+    mpm_io_put(&f, "\" part=\"0\" ");
+    mpm_io_put(&f, ending);
+    mpm_io_put(&f, MPM__IO_PVD_TAIL);
+    return mpm_io_close(&f, fault);
 }
 
 /* ---- checksums ----------------------------------------------------------------------------- */
@@ -1031,7 +1100,7 @@ typedef struct mpm__io_stamp {
     uint32_t size_size; /* of size_t: stored structs may hold it */
 } mpm__io_stamp;
 
-/* The head of each blob; its bytes follow. */
+/* The head of each blob and of the text before them; its bytes follow. */
 typedef struct mpm__io_blob_head {
     char name[64];
     uint64_t bytes;
@@ -1050,63 +1119,61 @@ static inline mpm__io_stamp mpm__io_stamp_make(int count)
     return s;
 }
 
-static inline mpm__io_blob_head mpm__io_blob_head_make(const mpm_io_blob *b)
+static inline mpm__io_blob_head mpm__io_blob_head_make(const char *name, size_t bytes)
 {
     mpm__io_blob_head h;
     memset(&h, 0, sizeof h);
-    mpm_append(h.name, sizeof h.name, 0, b->name);
-    h.bytes = b->bytes;
+    mpm_append(h.name, sizeof h.name, 0, name);
+    h.bytes = bytes;
     return h;
 }
 
-static inline mpm_status mpm__io_blobs_check(const mpm_io_blob *blobs, int count, mpm_fault *fault)
+static inline mpm_status mpm__io_blobs_check(const mpm_blob *blob, int count, mpm_fault *fault)
 {
     int i;
-    if (count < 0 || (count > 0 && !blobs))
+    if (count < 0 || (count > 0 && !blob))
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "count of blobs", (mpm_real)count, -1);
     for (i = 0; i < count; i++) {
-        if (!blobs[i].name || strlen(blobs[i].name) >= 64)
-            return mpm_fail(fault, MPM_ERR_ARGUMENT, "name of blob", 0, i);
-        if (!blobs[i].data && blobs[i].bytes > 0)
+        if (!blob[i].name || strlen(blob[i].name) >= 64) return mpm_fail(fault, MPM_ERR_ARGUMENT, "name of blob", 0, i);
+        if (!blob[i].data && (blob[i].bytes > 0 || blob[i].room > 0))
             return mpm_fail(fault, MPM_ERR_ARGUMENT, "data of blob", 0, i);
     }
     return MPM_OK;
 }
 
-/* Writes bytes and carries the checksum along. */
-static inline uint32_t mpm__io_put_summed(mpm_io_file *f, uint32_t crc, const void *data, size_t n)
+/* A head and its bytes; carries the checksum along. */
+static inline uint32_t mpm__io_put_blob(mpm_io_file *f, uint32_t crc, const char *name, const void *data, size_t n)
 {
-    if (n > 0) fwrite(data, 1, n, f->stream);
-    return mpm__io_crc(crc, data, n);
+    mpm__io_blob_head head = mpm__io_blob_head_make(name, n);
+    mpm_io_put_bytes(f, &head, sizeof head);
+    mpm_io_put_bytes(f, data, n);
+    return mpm__io_crc(mpm__io_crc(crc, &head, sizeof head), data, n);
 }
 
-MPM_API mpm_status mpm_io_checkpoint_write(const char *path, const mpm_io_blob *blobs, int count,
+MPM_API mpm_status mpm_io_checkpoint_write(const char *path, const char *text, const mpm_blob *blob, int count,
                                            mpm_fault *fault)
 {
     mpm_io_file f;
     mpm__io_stamp stamp = mpm__io_stamp_make(count);
-    uint32_t crc;
+    uint32_t crc = mpm__io_crc(0, &stamp, sizeof stamp);
     int i;
-    mpm_status status = mpm__io_blobs_check(blobs, count, fault);
+    mpm_status status = mpm__io_blobs_check(blob, count, fault);
     if (status < 0) return status;
-    status = mpm__io_open(&f, path, fault);
+    status = mpm_io_open(&f, path, fault);
     if (status < 0) return status;
-    crc = mpm__io_put_summed(&f, 0, &stamp, sizeof stamp);
-    for (i = 0; i < count; i++) {
-        mpm__io_blob_head head = mpm__io_blob_head_make(&blobs[i]);
-        crc = mpm__io_put_summed(&f, crc, &head, sizeof head);
-        crc = mpm__io_put_summed(&f, crc, blobs[i].data, blobs[i].bytes);
-    }
-    fwrite(&crc, sizeof crc, 1, f.stream);
-    return mpm__io_close(&f, 1, fault);
+    mpm_io_put_bytes(&f, &stamp, sizeof stamp);
+    crc = mpm__io_put_blob(&f, crc, "text", text ? text : "", text ? strlen(text) : 0);
+    for (i = 0; i < count; i++) crc = mpm__io_put_blob(&f, crc, blob[i].name, blob[i].data, blob[i].bytes);
+    mpm_io_put_bytes(&f, &crc, sizeof crc);
+    return mpm_io_close(&f, fault);
 }
 
 /* Reads n bytes past, adding them to the checksum; 0 when the file ends early. */
-static inline int mpm__io_skip_summed(FILE *in, size_t n, uint32_t *crc)
+static inline int mpm__io_skip_summed(FILE *in, uint64_t n, uint32_t *crc)
 {
     unsigned char buffer[4096];
     while (n > 0) {
-        size_t part = n < sizeof buffer ? n : sizeof buffer;
+        size_t part = n < sizeof buffer ? (size_t)n : sizeof buffer;
         if (fread(buffer, 1, part, in) != part) return 0;
         *crc = mpm__io_crc(*crc, buffer, part);
         n -= part;
@@ -1114,34 +1181,82 @@ static inline int mpm__io_skip_summed(FILE *in, size_t n, uint32_t *crc)
     return 1;
 }
 
-/* Compares stamp, names, sizes and checksum with what is asked for; changes nothing. */
-static inline mpm_status mpm__io_checkpoint_verify(FILE *in, const mpm_io_blob *blobs, int count,
+/* Compares n bytes of the file with a text. Returns the beginning of the text's first line that differs, and its
+   number; NULL if there is none. */
+static inline const char *mpm__io_text_differs(FILE *in, uint64_t n, const char *text, long *line, uint32_t *crc)
+{
+    const char *start = text, *at = text;
+    for (*line = 1; n > 0; n--) {
+        const int c = fgetc(in);
+        const unsigned char byte = (unsigned char)c;
+        if (c == EOF || *at == 0 || byte != (unsigned char)*at) return start;
+        *crc = mpm__io_crc(*crc, &byte, 1);
+        if (*at++ != '\n') continue;
+        start = at;
+        ++*line;
+    }
+    return *at ? start : NULL;
+}
+
+/* The stamp: who wrote the file. */
+static inline mpm_status mpm__io_stamp_verify(const mpm__io_stamp *found, const mpm__io_stamp *mine, mpm_fault *fault)
+{
+    if (memcmp(found->magic, mine->magic, 16) != 0)
+        return mpm_fail(fault, MPM_ERR_FILE, "path: not a checkpoint", 0, -1);
+    if (memcmp(found->version, mine->version, 16) != 0)
+        return mpm_fail(fault, MPM_ERR_VERSION, "version of checkpoint", 0, -1);
+    if (found->order != mine->order) return mpm_fail(fault, MPM_ERR_VERSION, "byte order of checkpoint", 0, -1);
+    if (found->real_size != mine->real_size)
+        return mpm_fail(fault, MPM_ERR_VERSION, "real size of checkpoint", (mpm_real)found->real_size, -1);
+    if (found->size_size != mine->size_size)
+        return mpm_fail(fault, MPM_ERR_VERSION, "word size of checkpoint", (mpm_real)found->size_size, -1);
+    return MPM_OK;
+}
+
+/* The text behind the stamp: what the file is of. */
+static inline mpm_status mpm__io_text_verify(FILE *in, const char *text, uint32_t *crc, mpm_fault *fault)
+{
+    mpm__io_blob_head head, wanted = mpm__io_blob_head_make("text", 0);
+    const char *differs;
+    long line;
+    if (fread(&head, sizeof head, 1, in) != 1 || memcmp(head.name, wanted.name, sizeof head.name) != 0)
+        return mpm_fail(fault, MPM_ERR_FILE, "text of checkpoint", 0, -1);
+    *crc = mpm__io_crc(*crc, &head, sizeof head);
+    differs = mpm__io_text_differs(in, head.bytes, text, &line, crc);
+    if (!differs) return MPM_OK;
+    return mpm_fail(fault, MPM_ERR_VERSION, *differs ? differs : "more lines in the file", 0, line);
+}
+
+/* Whether a stored blob is the one asked for and fits. */
+static inline int mpm__io_blob_fits(const mpm__io_blob_head *head, const mpm_blob *b)
+{
+    mpm__io_blob_head wanted = mpm__io_blob_head_make(b->name, 0);
+    if (memcmp(head->name, wanted.name, sizeof head->name) != 0) return 0;
+    return b->room > 0 ? head->bytes <= b->room : head->bytes == b->bytes;
+}
+
+/* Compares stamp, text, names, sizes and checksum with what is asked for; changes nothing. */
+static inline mpm_status mpm__io_checkpoint_verify(FILE *in, const char *text, const mpm_blob *blob, int count,
                                                    mpm_fault *fault)
 {
     mpm__io_stamp found, mine = mpm__io_stamp_make(count);
     uint32_t crc, stored;
+    mpm_status status;
     int i;
-    if (fread(&found, sizeof found, 1, in) != 1 || memcmp(found.magic, mine.magic, 16) != 0)
-        return mpm_fail(fault, MPM_ERR_FILE, "path: not a checkpoint", 0, -1);
-    if (memcmp(found.version, mine.version, 16) != 0)
-        return mpm_fail(fault, MPM_ERR_VERSION, "version of checkpoint", 0, -1);
-    if (found.order != mine.order)
-        return mpm_fail(fault, MPM_ERR_VERSION, "byte order of checkpoint", 0, -1);
-    if (found.real_size != mine.real_size)
-        return mpm_fail(fault, MPM_ERR_VERSION, "real size of checkpoint", (mpm_real)found.real_size, -1);
-    if (found.size_size != mine.size_size)
-        return mpm_fail(fault, MPM_ERR_VERSION, "word size of checkpoint", (mpm_real)found.size_size, -1);
+    if (fread(&found, sizeof found, 1, in) != 1) return mpm_fail(fault, MPM_ERR_FILE, "path: not a checkpoint", 0, -1);
+    if ((status = mpm__io_stamp_verify(&found, &mine, fault)) < 0) return status;
+    crc = mpm__io_crc(0, &found, sizeof found);
+    if ((status = mpm__io_text_verify(in, text, &crc, fault)) < 0) return status;
     if (found.count != mine.count)
         return mpm_fail(fault, MPM_ERR_FILE, "count of blobs differs", (mpm_real)found.count, -1);
-    crc = mpm__io_crc(0, &found, sizeof found);
     for (i = 0; i < count; i++) {
-        mpm__io_blob_head head, want = mpm__io_blob_head_make(&blobs[i]);
+        mpm__io_blob_head head;
         if (fread(&head, sizeof head, 1, in) != 1)
             return mpm_fail(fault, MPM_ERR_FILE, "checkpoint ends early", 0, i);
-        if (memcmp(head.name, want.name, sizeof head.name) != 0 || head.bytes != want.bytes)
+        if (!mpm__io_blob_fits(&head, &blob[i]))
             return mpm_fail(fault, MPM_ERR_FILE, "name or size of blob differs", 0, i);
         crc = mpm__io_crc(crc, &head, sizeof head);
-        if (!mpm__io_skip_summed(in, blobs[i].bytes, &crc))
+        if (!mpm__io_skip_summed(in, head.bytes, &crc))
             return mpm_fail(fault, MPM_ERR_FILE, "checkpoint ends early", 0, i);
     }
     if (fread(&stored, sizeof stored, 1, in) != 1 || fgetc(in) != EOF)
@@ -1150,58 +1265,192 @@ static inline mpm_status mpm__io_checkpoint_verify(FILE *in, const mpm_io_blob *
     return MPM_OK;
 }
 
-MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const mpm_io_blob *blobs, int count,
+/* The bytes of the blobs, into their places. */
+static inline int mpm__io_read_blobs(FILE *in, const char *text, mpm_blob *blob, int count)
+{
+    long skip = (long)(sizeof(mpm__io_stamp) + sizeof(mpm__io_blob_head) + strlen(text));
+    int i;
+    if (fseek(in, skip, SEEK_SET) != 0) return 0;
+    for (i = 0; i < count; i++) {
+        mpm__io_blob_head head;
+        if (fread(&head, sizeof head, 1, in) != 1 || !mpm__io_blob_fits(&head, &blob[i])) return 0;
+        blob[i].bytes = (size_t)head.bytes;
+        if (blob[i].bytes > 0 && fread(blob[i].data, 1, blob[i].bytes, in) != blob[i].bytes) return 0;
+    }
+    return 1;
+}
+
+MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const char *text, mpm_blob *blob, int count,
                                           mpm_fault *fault)
 {
     FILE *in;
-    int i, good = 1;
-    mpm_status status = mpm__io_blobs_check(blobs, count, fault);
+    int good = 1;
+    mpm_status status = mpm__io_blobs_check(blob, count, fault);
     if (status < 0) return status;
     in = path ? fopen(path, "rb") : NULL;
     if (!in) return mpm_fail(fault, MPM_ERR_FILE, "path: cannot be read", 0, -1);
-    status = mpm__io_checkpoint_verify(in, blobs, count, fault);
-    if (status == MPM_OK) {
-        good = fseek(in, (long)sizeof(mpm__io_stamp), SEEK_SET) == 0;
-        for (i = 0; i < count && good; i++) {
-            good = fseek(in, (long)sizeof(mpm__io_blob_head), SEEK_CUR) == 0;
-            if (good && blobs[i].bytes > 0)
-                good = fread(blobs[i].data, 1, blobs[i].bytes, in) == blobs[i].bytes;
-        }
-    }
+    if (!text) text = "";
+    status = mpm__io_checkpoint_verify(in, text, blob, count, fault);
+    if (status == MPM_OK) good = mpm__io_read_blobs(in, text, blob, count);
     fclose(in);
-    if (!good) return mpm_fail(fault, MPM_ERR_FILE, "path: reading failed", 0, -1);
-    return status;
+    return good ? status : mpm_fail(fault, MPM_ERR_FILE, "path: reading failed", 0, -1);
 }
 
-static inline mpm_io_blob mpm__io_blob(const char *name, void *data, size_t bytes)
+/* ---- descriptions as text ------------------------------------------------------------------- */
+
+MPM_API size_t mpm_io_line(char *buffer, size_t n, size_t used, const char *name, const char *value)
 {
-    mpm_io_blob b;
-    b.name = name;
-    b.bytes = bytes;
-    b.data = data;
-    return b;
+    used = mpm_append(buffer, n, used, name);
+    used = mpm_append(buffer, n, used, " ");
+    used = mpm_append(buffer, n, used, value);
+    return mpm_append(buffer, n, used, "\n");
 }
 
-MPM_API int mpm_io_world_blobs(mpm_world *w, mpm_io_blob *blobs)
+MPM_API size_t mpm_io_line_number(char *buffer, size_t n, size_t used, const char *name, double value)
 {
-    size_t points = (size_t)w->points.capacity, reals = w->stride * (size_t)w->fields;
-    int n = 0;
+    char text[40];
+    mpm_io_number_text(text, sizeof text, value);
+    return mpm_io_line(buffer, n, used, name, text);
+}
+
+/* A text being written, line by line. */
+typedef struct mpm__io_page {
+    char *buffer;
+    size_t n, used;
+    const char *of; /* stands before the names, with a number: "body 2 spacing"; or NULL */
+    int32_t number;
+} mpm__io_page;
+
+static inline void mpm__io_say(mpm__io_page *t, const char *text)
+{
+    t->used = mpm_append(t->buffer, t->n, t->used, text);
+}
+
+/* The beginning of a line. */
+static inline void mpm__io_name(mpm__io_page *t, const char *name)
+{
+    char text[40];
+    if (t->of) {
+        snprintf(text, sizeof text, " %ld ", (long)t->number);
+        mpm__io_say(t, t->of);
+        mpm__io_say(t, text);
+    }
+    mpm__io_say(t, name);
+}
+
+/* A line of `count` choices, whose words stand in a list. */
+#define MPM__IO_WORD(name, word, text) " " word,
+static inline void mpm__io_words(mpm__io_page *t, const char *name, const char *const *word, const int32_t *choice,
+                                 int count)
+{
+    int i;
+    mpm__io_name(t, name);
+    for (i = 0; i < count; i++) mpm__io_say(t, word[choice[i]]);
+    mpm__io_say(t, "\n");
+}
+
+/* A line of `count` values: reals or, where these are NULL, whole numbers. */
+static inline void mpm__io_values(mpm__io_page *t, const char *name, const mpm_real *real, const int32_t *whole,
+                                  int count)
+{
+    char text[40];
+    int i;
+    mpm__io_name(t, name);
+    for (i = 0; i < count; i++) {
+        if (real) mpm__io_print_real(text, sizeof text, real[i]);
+        else snprintf(text, sizeof text, "%ld", (long)whole[i]);
+        mpm__io_say(t, " ");
+        mpm__io_say(t, text);
+    }
+    mpm__io_say(t, "\n");
+}
+
+static inline void mpm__io_real(mpm__io_page *t, const char *name, mpm_real value)
+{
+    mpm__io_values(t, name, &value, NULL, 1);
+}
+
+static inline void mpm__io_whole(mpm__io_page *t, const char *name, int32_t value)
+{
+    mpm__io_values(t, name, NULL, &value, 1);
+}
+
+static inline void mpm__io_contact_text(mpm__io_page *t, const mpm_contact *c)
+{
+    static const char *const laws[] = {MPM_CONTACT_LIST(MPM__IO_WORD)};
+    static const char *const normals[] = {MPM_NORMAL_LIST(MPM__IO_WORD)};
+    const int32_t law = (int32_t)c->law, normal = (int32_t)c->normal;
+    mpm__io_words(t, "contact.law", laws, &law, 1);
+    mpm__io_words(t, "contact.normal", normals, &normal, 1);
+    mpm__io_real(t, "contact.friction", c->friction);
+    mpm__io_real(t, "contact.cutoff", c->cutoff);
+    mpm__io_whole(t, "contact.touch", c->touch);
+}
+
+/* The grid and what holds for all bodies. Capacities are left out: they may differ. */
+static inline void mpm__io_desc_text(mpm__io_page *t, const mpm_desc *d)
+{
+    static const char *const geometries[] = {MPM_GEOMETRY_LIST(MPM__IO_WORD)};
+    static const char *const bases[] = {MPM_BASIS_LIST(MPM__IO_WORD)};
+    static const char *const sides[] = {MPM_SIDE_LIST(MPM__IO_WORD)};
+    const int32_t geometry = (int32_t)d->geometry, basis = (int32_t)d->basis;
+    int32_t side[6];
+    int i;
+    for (i = 0; i < 6; i++) side[i] = (int32_t)d->side[i];
+    mpm__io_words(t, "geometry", geometries, &geometry, 1);
+    mpm__io_words(t, "basis", bases, &basis, 1);
+    mpm__io_values(t, "origin", d->origin, NULL, 3);
+    mpm__io_real(t, "cell", d->cell);
+    mpm__io_values(t, "cells", NULL, d->cells, 3);
+    mpm__io_words(t, "side", sides, side, 6);
+    mpm__io_real(t, "wall_friction", d->wall_friction);
+    mpm__io_contact_text(t, &d->contact);
+    mpm__io_values(t, "gravity", d->gravity, NULL, 3);
+    mpm__io_real(t, "mass_cutoff", d->mass_cutoff);
+    mpm__io_whole(t, "user_fields", d->user_fields);
+}
+
+#undef MPM__IO_WORD
+
+static inline void mpm__io_body_text(mpm__io_page *t, const mpm_body_desc *b)
+{
+    mpm__io_whole(t, "shape", (int32_t)b->shape.kind);
+    mpm__io_values(t, "center", b->shape.center, NULL, 3);
+    mpm__io_values(t, "half", b->shape.half, NULL, 3);
+    mpm__io_real(t, "spacing", b->spacing);
+    mpm__io_real(t, "density", b->density);
+    mpm__io_values(t, "velocity", b->velocity, NULL, 3);
+    mpm__io_real(t, "temperature", b->temperature);
+    mpm__io_whole(t, "stress", b->stress != NULL);
+    mpm__io_real(t, "wave_p", b->wave_p);
+    mpm__io_real(t, "wave_s", b->wave_s);
+    mpm__io_whole(t, "absorb", b->absorb);
+    mpm__io_real(t, "absorb_normal", b->absorb_normal);
+    mpm__io_real(t, "absorb_shear", b->absorb_shear);
+    mpm__io_real(t, "shell", b->shell);
+    mpm__io_whole(t, "id", b->id);
+}
+
+MPM_API size_t mpm_io_world_text(char *buffer, size_t n, const mpm_world *w)
+{
+    mpm__io_page t = {NULL, 0, 0, NULL, 0};
     int32_t i;
-    blobs[n++] = mpm__io_blob("point fields", w->field, reals * sizeof(mpm_real));
-    blobs[n++] = mpm__io_blob("point flags", w->points.flags, points);
-    blobs[n++] = mpm__io_blob("point ids", w->points.id, points * sizeof(int32_t));
-    blobs[n++] = mpm__io_blob("point count", &w->points.count, sizeof w->points.count);
-    blobs[n++] = mpm__io_blob("time", &w->time, sizeof w->time);
-    blobs[n++] = mpm__io_blob("steps", &w->steps, sizeof w->steps);
-    blobs[n++] = mpm__io_blob("ledger", &w->ledger, sizeof w->ledger);
-    blobs[n++] = mpm__io_blob("retired", &w->retired, sizeof w->retired);
-    blobs[n++] = mpm__io_blob("sorts", &w->sorts, sizeof w->sorts);
-    blobs[n++] = mpm__io_blob("notices", &w->notices, sizeof w->notices);
-    blobs[n++] = mpm__io_blob("held", &w->held, sizeof w->held);
-    blobs[n++] = mpm__io_blob("sorted runs", &w->sorted_runs, sizeof w->sorted_runs);
-    for (i = 0; i < w->bodies; i++)
-        blobs[n++] = mpm__io_blob("active points", &w->body[i].active, sizeof w->body[i].active);
-    return n;
+    t.buffer = buffer;
+    t.n = n;
+    t.used = mpm_io_line(buffer, n, 0, "mpm.h", MPM_VERSION);
+    mpm__io_desc_text(&t, &w->desc);
+    t.of = "rule";
+    for (i = 0; i < w->rules; i++) {
+        int32_t pair[2];
+        t.number = i;
+        pair[0] = w->rule[i].a;
+        pair[1] = w->rule[i].b;
+        mpm__io_values(&t, "bodies", NULL, pair, 2);
+        mpm__io_contact_text(&t, &w->rule[i].contact);
+    }
+    t.of = "body";
+    for (t.number = 0; t.number < w->bodies; t.number++) mpm__io_body_text(&t, &w->body[t.number].desc);
+    return t.used;
 }
 
 /* ---- deflate: LZ77 matches, Huffman codes -------------------------------------------------- */
@@ -1234,11 +1483,11 @@ static inline void mpm__io_png_chunk(mpm_io_file *f, const char *type, const voi
 {
     unsigned char number[4];
     mpm__io_big_endian(number, (uint32_t)n);
-    fwrite(number, 1, 4, f->stream);
-    fwrite(type, 1, 4, f->stream);
-    if (n > 0) fwrite(body, 1, n, f->stream);
+    mpm_io_put_bytes(f, number, 4);
+    mpm_io_put_bytes(f, type, 4);
+    mpm_io_put_bytes(f, body, n);
     mpm__io_big_endian(number, mpm__io_crc(mpm__io_crc(0, type, 4), body, n));
-    fwrite(number, 1, 4, f->stream);
+    mpm_io_put_bytes(f, number, 4);
 }
 
 static inline void mpm__io_zip_byte(mpm__io_zip *z, unsigned value)
@@ -1550,7 +1799,7 @@ static inline void mpm__io_png_text(mpm_io_file *f, const char *keyword, const c
 static inline void mpm__io_png_body(mpm_io_file *f, mpm__io_zip *z, int width, int height, const char *note)
 {
     unsigned char header[13] = {0};
-    mpm__io_put(f, "\x89PNG\r\n\x1a\n");
+    mpm_io_put(f, "\x89PNG\r\n\x1a\n");
     mpm__io_big_endian(header, (uint32_t)width);
     mpm__io_big_endian(header + 4, (uint32_t)height);
     header[8] = 8; /* bits per sample */
@@ -1573,12 +1822,12 @@ MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "width of picture", (mpm_real)width, -1);
     if (height < 1 || height > 16384)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "height of picture", (mpm_real)height, -1);
-    status = mpm__io_open(&f, path, fault);
+    status = mpm_io_open(&f, path, fault);
     if (status < 0) return status;
     bytes = sizeof *z + ((size_t)width * 3 + 1) * (size_t)height;
     z = (mpm__io_zip *)MPM_MALLOC(bytes);
     if (!z) {
-        mpm__io_close(&f, 0, NULL);
+        mpm_io_drop(&f);
         return mpm_fail(fault, MPM_ERR_MEMORY, "bytes for picture", (mpm_real)bytes, -1);
     }
     memset(z, 0, sizeof *z);
@@ -1586,7 +1835,7 @@ MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int
     mpm__io_filter_all(pixels, width, height, (unsigned char *)(z + 1));
     mpm__io_png_body(&f, z, width, height, note);
     MPM_FREE(z);
-    return mpm__io_close(&f, 1, fault);
+    return mpm_io_close(&f, fault);
 }
 
 #ifdef __cplusplus

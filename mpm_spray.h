@@ -38,7 +38,7 @@
      state                     mpm_spray; mpm_spray_init, _free, _add, _check, _bytes
      the step, phase by phase  mpm_spray_step = inject, fly, bin, find, resolve, move, escape
      the measures              mpm_spray_measure
-     restart                   mpm_spray_save, _load, _saved_bytes
+     restart                   mpm_spray_blobs, _restored
      the models, one by one    mpm_spray_restitution, _stick_speed, _drag_cd_re, _jet_velocity, ...
 
    CONFIGURATION: that of mpm.h (MPM_FLOAT, MPM_STATIC, MPM_MALLOC, MPM_FREE).
@@ -82,9 +82,8 @@
 #define mpm_spray_escape mpm_spray_escape_f32
 #define mpm_spray_time mpm_spray_time_f32
 #define mpm_spray_measure mpm_spray_measure_f32
-#define mpm_spray_saved_bytes mpm_spray_saved_bytes_f32
-#define mpm_spray_save mpm_spray_save_f32
-#define mpm_spray_load mpm_spray_load_f32
+#define mpm_spray_blobs mpm_spray_blobs_f32
+#define mpm_spray_restored mpm_spray_restored_f32
 #define mpm_spray_modulus mpm_spray_modulus_f32
 #define mpm_spray_limit_speed mpm_spray_limit_speed_f32
 #define mpm_spray_restitution mpm_spray_restitution_f32
@@ -190,6 +189,7 @@ typedef void (*mpm_spray_touch_fn)(void *user, const mpm_spray_touch *touch);
 
 /* Everything that makes a spray. mpm_spray_desc_default gives the paper's Table 1. */
 typedef struct mpm_spray_desc {
+    unsigned mark;                 /* set by mpm_spray_desc_default */
     /* solids */
     mpm_spray_solid particle, target;
     mpm_real density;              /* of the particles [kg/m^3] */
@@ -340,25 +340,27 @@ MPM_API mpm_spray_desc mpm_spray_desc_default(void);
    MPM_ERR_ARGUMENT, MPM_ERR_NAN. Test: 51_spray_input. */
 MPM_API mpm_status mpm_spray_check(const mpm_spray_desc *d, mpm_fault *fault);
 
-/* Bytes that mpm_spray_init needs; 0 if d is invalid or the size overflows. */
+/* Bytes that mpm_spray_init needs; 0 if d is invalid or the size overflows. Test: 51_spray_input. */
 MPM_API size_t mpm_spray_bytes(const mpm_spray_desc *d);
 
 /* Prepares a spray in the caller's memory (kept until the end, aligned as malloc aligns), or with
-   NULL in memory from MPM_MALLOC. MPM_ERR_ARGUMENT / NAN (see s->fault), MPM_ERR_MEMORY. */
+   NULL in memory from MPM_MALLOC. MPM_ERR_ARGUMENT / NAN (see s->fault), MPM_ERR_MEMORY.
+   Test: 51_spray_input, 52_spray_flow. */
 MPM_API mpm_status mpm_spray_init(mpm_spray *s, const mpm_spray_desc *d, void *memory, size_t bytes);
 
-/* Gives back what MPM_MALLOC gave. Safe after a failed mpm_spray_init. */
+/* Gives back what MPM_MALLOC gave. Safe after a failed mpm_spray_init. Test: 51_spray_input. */
 MPM_API void mpm_spray_free(mpm_spray *s);
 
 /* Puts one particle into flight; it counts as injected. Whether it overlaps another is not checked
-   (overlapping particles that approach collide at once). MPM_ERR_ARGUMENT / NAN, MPM_ERR_FULL. */
+   (overlapping particles that approach collide at once). MPM_ERR_ARGUMENT / NAN, MPM_ERR_FULL.
+   Test: 51_spray_input. */
 MPM_API mpm_status mpm_spray_add(mpm_spray *s, const mpm_spray_ball *ball);
 
 /* ---- the step, phase by phase -------------------------------------------------------------- */
 
 /* One step of dt: the phases below in their order. MPM_NOT_CONVERGED: the drag iteration of some
    particle reached its limit and the exponential update was used for it (tally.not_converged).
-   MPM_ERR_FULL, MPM_ERR_NAN: see inject and fly; the step is then incomplete. */
+   MPM_ERR_FULL, MPM_ERR_NAN: see inject and fly; the step is then incomplete. Test: 52_spray_flow. */
 MPM_API mpm_status mpm_spray_step(mpm_spray *s);
 
 /* Feeds the batches that are due (B 35), one particle after the other, each at a random place of
@@ -372,23 +374,24 @@ MPM_API mpm_status mpm_spray_inject(mpm_spray *s);
    Tests: 50_spray (transit times, terminal speed, orders), 52_spray_flow (dust). */
 MPM_API mpm_status mpm_spray_fly(mpm_spray *s);
 
-/* Puts the particles into bins (4.3, "direct binning"): linear in their number. */
+/* Puts the particles into bins (4.3, "direct binning"): linear in their number. Test: 53_spray_search. */
 MPM_API void mpm_spray_bin(mpm_spray *s);
 
 /* Finds the first contact on each particle's path (B 40, 41). Test: 53_spray_search. */
 MPM_API void mpm_spray_find(mpm_spray *s);
 
 /* Carries out the contacts in the order of time: impulse (B 7-15, 22, 23) or deposition (B 34). A
-   particle that has been hit looks for its next contact along its new path. */
+   particle that has been hit looks for its next contact along its new path. Test: 50_spray, 53_spray_search. */
 MPM_API void mpm_spray_resolve(mpm_spray *s);
 
-/* Takes everything to the end of the step, moving planes included. */
+/* Takes everything to the end of the step, moving planes included. Test: 50_spray. */
 MPM_API void mpm_spray_move(mpm_spray *s);
 
-/* Closes the ranks: removes what was deposited or has left the box (4.1). */
+/* Closes the ranks: removes what was deposited or has left the box (4.1). Test: 52_spray_flow. */
 MPM_API void mpm_spray_escape(mpm_spray *s);
 
-MPM_API mpm_real mpm_spray_time(const mpm_spray *s); /* step * dt [s] */
+/* step * dt [s]. Test: 52_spray_flow. */
+MPM_API mpm_real mpm_spray_time(const mpm_spray *s);
 
 /* ---- the measures -------------------------------------------------------------------------- */
 
@@ -413,25 +416,25 @@ MPM_API void mpm_spray_measure(const mpm_spray *s, mpm_spray_metrics *m);
 
 /* ---- restart ------------------------------------------------------------------------------- */
 
-/* Bytes that mpm_spray_save writes now. */
-MPM_API size_t mpm_spray_saved_bytes(const mpm_spray *s);
+/* The state: all that the next step depends on, and what is counted. Fills blob[], at most MPM_SPRAY_BLOBS of them,
+   and returns how many. To go on from stored ones, prepare a spray with the same description and room for as many
+   particles, read them (mpm_io_checkpoint_read) and call mpm_spray_restored.
+   Test: 52_spray_flow (restart gives the same bytes as the uninterrupted run). */
+#define MPM_SPRAY_BLOBS (18 + MPM_SPRAY_PLANES)
+MPM_API int mpm_spray_blobs(mpm_spray *s, mpm_blob *blob);
 
-/* Writes the whole state into the caller's buffer: same machine, same real type, same version.
-   MPM_ERR_MEMORY. Test: 52_spray_flow (restart gives the same bytes as the uninterrupted run). */
-MPM_API mpm_status mpm_spray_save(const mpm_spray *s, void *buffer, size_t bytes);
-
-/* Brings such a state back into a spray initialised with the same description (its callbacks are
-   those of now). MPM_ERR_VERSION: another version or real type; MPM_ERR_MEMORY: too short;
-   MPM_ERR_FULL: more particles than its capacity. On failure the spray is unchanged. */
-MPM_API mpm_status mpm_spray_load(mpm_spray *s, const void *buffer, size_t bytes);
+/* Checks what was read into the blobs of mpm_spray_blobs, before anything of it is used, and builds what follows
+   from it. MPM_ERR_ARGUMENT / NAN, named by s->fault: the spray is then without particles.
+   Test: 51_spray_input. */
+MPM_API mpm_status mpm_spray_restored(mpm_spray *s, const mpm_blob *blob);
 
 /* ---- the models, one by one ---------------------------------------------------------------- */
 
-/* E* of two solids [Pa]: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, E and nu from the moduli. */
+/* E* of two solids [Pa]: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, E and nu from the moduli. Test: 50_spray. */
 MPM_API mpm_real mpm_spray_modulus(const mpm_spray_solid *a, const mpm_spray_solid *b);
 
 /* Speed below which a contact stays elastic [m/s] (B 17). mass, radius: those of the particle at a
-   wall, m1 m2/(m1 + m2) and R1 R2/(R1 + R2) for a pair (the text leaves them undefined there). */
+   wall, m1 m2/(m1 + m2) and R1 R2/(R1 + R2) for a pair (the text leaves them undefined there). Test: 50_spray. */
 MPM_API mpm_real mpm_spray_limit_speed(mpm_real mass, mpm_real radius, mpm_real yield, mpm_real modulus);
 
 /* Restitution e at a normal speed >= 0 (B 18), never above 1: as printed it is 2.277 at the limit
@@ -440,20 +443,20 @@ MPM_API mpm_real mpm_spray_restitution(mpm_real speed, mpm_real mass, mpm_real r
                                        mpm_real modulus);
 
 /* Duration of an elastic contact [s] (B 16), speed > 0, and of the compression phase of an
-   inelastic one (B 19); the recovery then takes 1.2 e times as long as the compression. */
+   inelastic one (B 19); the recovery then takes 1.2 e times as long as the compression. Test: 50_spray. */
 MPM_API mpm_real mpm_spray_elastic_time(mpm_real speed, mpm_real mass, mpm_real radius, mpm_real modulus);
 MPM_API mpm_real mpm_spray_compression_time(mpm_real mass, mpm_real radius, mpm_real yield);
 
 /* Interface energy of two surface energies [J/m^2]. The paper has three different ones; since only
-   alpha times it matters, the choice rescales alpha. */
+   alpha times it matters, the choice rescales alpha. Test: 50_spray. */
 MPM_API mpm_real mpm_spray_gamma12(mpm_spray_mixing rule, mpm_real gamma1, mpm_real gamma2);
 
 /* Largest normal speed that sticks [m/s]: 0.2 alpha F dt1 / m (B 34, last line), with the
-   attractive force F = 4 pi gamma R (the size of B 32, whose sign is a misprint). */
+   attractive force F = 4 pi gamma R (the size of B 32, whose sign is a misprint). Test: 50_spray. */
 MPM_API mpm_real mpm_spray_stick_speed(mpm_real alpha, mpm_real gamma, mpm_real mass, mpm_real radius,
                                        mpm_real yield);
 
-/* The paper's criterion, for mpm_spray_desc.stick: below that speed it sticks. user is not used. */
+/* The paper's criterion, for mpm_spray_desc.stick: below that speed it sticks. user is not used. Test: 50_spray. */
 MPM_API int mpm_spray_stick_adhesion(void *user, const mpm_spray_touch *touch);
 
 /* The cold-spray window, which the paper names as the natural other criterion: bonds from a
@@ -466,10 +469,13 @@ typedef struct mpm_spray_window {
 } mpm_spray_window;
 
 /* Aluminium on aluminium by source A: 824 m/s at 14 um to 761 m/s at 30 um, linear (its table 5.4).
-   It gives no erosion velocity; set one if you know it. */
+   It gives no erosion velocity; set one if you know it. Test: 50_spray. */
 MPM_API mpm_spray_window mpm_spray_window_aluminium(void);
-MPM_API mpm_real mpm_spray_window_critical(const mpm_spray_window *w, mpm_real diameter); /* >= 0 */
-/* The criterion for mpm_spray_desc.stick; user points to a mpm_spray_window. */
+
+/* The critical velocity of a diameter [m/s], >= 0. Test: 50_spray. */
+MPM_API mpm_real mpm_spray_window_critical(const mpm_spray_window *w, mpm_real diameter);
+
+/* The criterion for mpm_spray_desc.stick; user points to a mpm_spray_window. Test: 50_spray. */
 MPM_API int mpm_spray_stick_window(void *user, const mpm_spray_touch *touch);
 
 /* Collision of two balls that touch (B 7-15): changes v and spin, returns the normal impulse
@@ -480,19 +486,19 @@ MPM_API mpm_real mpm_spray_collide(mpm_spray_ball *a, mpm_spray_ball *b, mpm_rea
                                    mpm_real speed);
 
 /* The same against something that does not recoil (B 20-23), with unit normal n towards the ball
-   and surface velocity u. */
+   and surface velocity u. Test: 50_spray. */
 MPM_API mpm_real mpm_spray_collide_fixed(mpm_spray_ball *a, const mpm_real n[3], const mpm_real u[3],
                                          mpm_real e, mpm_real friction, mpm_real speed);
 
-/* Cd Re of a sphere (Haider and Levenspiel, B 25 times Re: finite at Re = 0, where it is 24). */
+/* Cd Re of a sphere (Haider and Levenspiel, B 25 times Re: finite at Re = 0, where it is 24). Test: 50_spray. */
 MPM_API mpm_real mpm_spray_drag_cd_re(mpm_real re);
 
-/* 1 / relaxation time [1/s]: dv/dt = rate (u - v) (B 24). slip: |u - v| [m/s]. */
+/* 1 / relaxation time [1/s]: dv/dt = rate (u - v) (B 24). slip: |u - v| [m/s]. Test: 50_spray. */
 MPM_API mpm_real mpm_spray_drag_rate(mpm_real slip, mpm_real radius, mpm_real density,
                                      mpm_real gas_density, mpm_real gas_viscosity);
 
 /* The jet that leaves a nozzle with a given speed: half width (sech^2 = 1/2) equal to the nozzle
-   radius at the end of the core. All > 0; blend <= core. */
+   radius at the end of the core. All > 0; blend <= core. Test: 50_spray. */
 MPM_API mpm_spray_jet mpm_spray_jet_make(mpm_real speed, mpm_real nozzle_radius, mpm_real core,
                                          mpm_real blend);
 
@@ -501,10 +507,10 @@ MPM_API mpm_spray_jet mpm_spray_jet_make(mpm_real speed, mpm_real nozzle_radius,
 MPM_API void mpm_spray_jet_velocity(const mpm_spray_jet *j, int axisymmetric, const mpm_real x[3],
                                     mpm_real u[3]);
 
-/* Uniform number in [0, 1) from a 64-bit state, which it advances. Any seed will do. */
+/* Uniform number in [0, 1) from a 64-bit state, which it advances. Any seed will do. Test: 50_spray. */
 MPM_API mpm_real mpm_spray_random(uint64_t *state);
 
-/* Weibull scale lambda from the median diameter and the shape n (B 37). */
+/* Weibull scale lambda from the median diameter and the shape n (B 37). Test: 50_spray. */
 MPM_API mpm_real mpm_spray_size_scale(mpm_real median, mpm_real shape);
 
 /* Diameter at the quantile u in [0, 1) of the distribution B 36 truncated to [min, max] (max may be
@@ -804,6 +810,7 @@ MPM_API mpm_spray_desc mpm_spray_desc_default(void)
 {
     mpm_spray_desc d;
     memset(&d, 0, sizeof d);
+    d.mark = MPM_MARK;
     d.particle.shear = MPM_R(77e9);
     d.particle.bulk = MPM_R(167e9);
     d.particle.yield = MPM_R(690e6); /* not in the paper: taken equal to the target's */
@@ -1010,6 +1017,8 @@ static inline mpm_status mpm__spray_check_numbers(const mpm_spray_desc *d, mpm_f
 MPM_API mpm_status mpm_spray_check(const mpm_spray_desc *d, mpm_fault *fault)
 {
     mpm_status s;
+    if (d->mark != MPM_MARK)
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_spray_desc_default)", (mpm_real)d->mark, -1);
     if ((s = mpm__spray_check_solid(&d->particle, fault)) != MPM_OK) return s;
     if ((s = mpm__spray_check_solid(&d->target, fault)) != MPM_OK) return s;
     if ((s = mpm__spray_check_powder(d, fault)) != MPM_OK) return s;
@@ -2105,127 +2114,117 @@ MPM_API void mpm_spray_measure(const mpm_spray *s, mpm_spray_metrics *m)
 
 /* ---- restart ------------------------------------------------------------------------------- */
 
-/* A saved state: this, then the arrays listed in mpm__spray_arrays, packed. */
-typedef struct mpm__spray_head {
-    char magic[16];
-    int64_t live, deposited, planes, real;
-    mpm_spray_tally tally;
-    mpm_real point[MPM_SPRAY_PLANES][3];
-} mpm__spray_head;
+#define MPM__SPRAY_ARRAYS 15 /* come first */
 
-#define MPM__SPRAY_ARRAYS 15
-
-/* The arrays that make the state: where each is, and how many bytes of it count. */
-static inline void mpm__spray_arrays(const mpm_spray *s, size_t live, size_t deposited,
-                                     void *array[MPM__SPRAY_ARRAYS], size_t bytes[MPM__SPRAY_ARRAYS])
+MPM_API int mpm_spray_blobs(mpm_spray *s, mpm_blob *blob)
 {
     const size_t real = sizeof(mpm_real), i32 = sizeof(int32_t), i64 = sizeof(int64_t);
-    array[0] = s->x, bytes[0] = 3 * live * real;
-    array[1] = s->v, bytes[1] = 3 * live * real;
-    array[2] = s->spin, bytes[2] = 3 * live * real;
-    array[3] = s->radius, bytes[3] = live * real;
-    array[4] = s->density, bytes[4] = live * real;
-    array[5] = s->id, bytes[5] = live * i64;
-    array[6] = s->collisions, bytes[6] = live * i32;
-    array[7] = s->touches, bytes[7] = live * i32;
-    array[8] = s->drag, bytes[8] = 3 * live * real;
-    array[9] = s->known, bytes[9] = live * i32;
-    array[10] = s->deposit_x, bytes[10] = 3 * deposited * real;
-    array[11] = s->deposit_radius, bytes[11] = deposited * real;
-    array[12] = s->deposit_time, bytes[12] = deposited * real;
-    array[13] = s->deposit_id, bytes[13] = deposited * i64;
-    array[14] = s->deposit_collisions, bytes[14] = deposited * i32;
+    const size_t live = (size_t)s->live, stuck = (size_t)s->deposited, room = (size_t)s->desc.capacity;
+    int n = 0, k;
+    blob[n++] = mpm_blob_array("x", s->x, live, room, 3 * real);
+    blob[n++] = mpm_blob_array("v", s->v, live, room, 3 * real);
+    blob[n++] = mpm_blob_array("spin", s->spin, live, room, 3 * real);
+    blob[n++] = mpm_blob_array("radius", s->radius, live, room, real);
+    blob[n++] = mpm_blob_array("density", s->density, live, room, real);
+    blob[n++] = mpm_blob_array("id", s->id, live, room, i64);
+    blob[n++] = mpm_blob_array("collisions", s->collisions, live, room, i32);
+    blob[n++] = mpm_blob_array("touches", s->touches, live, room, i32);
+    blob[n++] = mpm_blob_array("drag", s->drag, live, room, 3 * real);
+    blob[n++] = mpm_blob_array("known", s->known, live, room, i32);
+    blob[n++] = mpm_blob_array("deposit x", s->deposit_x, stuck, room, 3 * real);
+    blob[n++] = mpm_blob_array("deposit radius", s->deposit_radius, stuck, room, real);
+    blob[n++] = mpm_blob_array("deposit time", s->deposit_time, stuck, room, real);
+    blob[n++] = mpm_blob_array("deposit id", s->deposit_id, stuck, room, i64);
+    blob[n++] = mpm_blob_array("deposit collisions", s->deposit_collisions, stuck, room, i32);
+    blob[n++] = mpm_blob_of("live", &s->live, sizeof s->live);
+    blob[n++] = mpm_blob_of("deposited", &s->deposited, sizeof s->deposited);
+    blob[n++] = mpm_blob_of("tally", &s->tally, sizeof s->tally);
+    for (k = 0; k < s->planes; k++)
+        blob[n++] = mpm_blob_of("point of plane", s->plane[k].point, sizeof s->plane[k].point);
+    return n;
 }
 
-MPM_API size_t mpm_spray_saved_bytes(const mpm_spray *s)
+/* The counts against each other and the capacity: as every step leaves them. */
+static inline mpm_status mpm__spray_restored_counts(const mpm_spray *s, mpm_fault *f)
 {
-    void *array[MPM__SPRAY_ARRAYS];
-    size_t bytes[MPM__SPRAY_ARRAYS], sum = sizeof(mpm__spray_head);
+    const mpm_spray_tally *t = &s->tally;
+    const mpm_spray_desc *d = &s->desc;
+    const int64_t most = INT64_C(1) << 52;
+    const double fed = d->batch > 0 ? (double)d->dt * (double)d->feed / d->batch : 0; /* batches per step */
+    mpm__spray_rule r[10];
+    int n = 0;
+    r[n++] = mpm__spray_rule_of("live", (mpm_real)s->live, s->live >= 0 && s->live <= d->capacity);
+    r[n++] = mpm__spray_rule_of("deposited", (mpm_real)s->deposited,
+                                s->deposited >= 0 && (int64_t)s->live + s->deposited <= d->capacity);
+    r[n++] = mpm__spray_rule_of("tally.deposited", (mpm_real)t->deposited, t->deposited == s->deposited);
+    r[n++] = mpm__spray_rule_of("tally.escaped", (mpm_real)t->escaped, t->escaped >= 0 && t->escaped < most);
+    r[n++] = mpm__spray_rule_of("tally.injected", (mpm_real)t->injected,
+                                t->injected >= 0 && t->injected < most &&
+                                    (double)t->injected - (double)t->escaped == (double)s->live + s->deposited);
+    r[n++] = mpm__spray_rule_of("tally.step", (mpm_real)t->step,
+                                t->step >= 0 && t->step < most && (double)t->step * fed < 1e15);
+    r[n++] = mpm__spray_rule_of("tally.batches", (mpm_real)t->batches,
+                                (double)t->batches >= ((double)t->step - 1) * fed - 1 && (double)t->batches < 1e15);
+    r[n++] = mpm__spray_rule_of("tally.pending", (mpm_real)t->pending,
+                                t->pending >= 0 && (double)t->pending <= (double)t->batches * d->batch);
+    r[n++] = mpm__spray_rule_of("tally.wait_radius", (mpm_real)t->wait_radius,
+                                t->wait_radius >= 0 && t->wait_radius <= (double)d->nozzle_radius);
+    r[n++] = mpm__spray_rule_of("tally.wait_speed", (mpm_real)t->wait_speed, 1);
+    return mpm__spray_judge(r, n, f);
+}
+
+/* As many values per array as there are particles. */
+static inline mpm_status mpm__spray_restored_sizes(mpm_spray *s, const mpm_blob *blob, mpm_fault *f)
+{
+    mpm_blob wanted[MPM_SPRAY_BLOBS];
+    mpm_status status = MPM_OK;
     int k;
-    mpm__spray_arrays(s, (size_t)s->live, (size_t)s->deposited, array, bytes);
-    for (k = 0; k < MPM__SPRAY_ARRAYS; k++) sum += bytes[k];
-    return sum;
+    mpm_spray_blobs(s, wanted);
+    for (k = 0; k < MPM__SPRAY_ARRAYS && status == MPM_OK; k++)
+        status = mpm_want(blob[k].bytes == wanted[k].bytes, f, wanted[k].name, (mpm_real)blob[k].bytes, -1);
+    return status;
 }
 
-static inline void mpm__spray_magic(char magic[16])
+/* The particles themselves and the places of the planes. */
+static inline mpm_status mpm__spray_restored_particles(const mpm_spray *s, mpm_fault *f)
 {
-    static const char text[16] = "mpm_spray " MPM_VERSION;
-    memcpy(magic, text, 16);
-}
-
-MPM_API mpm_status mpm_spray_save(const mpm_spray *s, void *buffer, size_t bytes)
-{
-    void *array[MPM__SPRAY_ARRAYS];
-    size_t size[MPM__SPRAY_ARRAYS];
-    char *to = (char *)buffer;
-    mpm__spray_head head;
-    int k;
-    if (bytes < mpm_spray_saved_bytes(s)) return MPM_ERR_MEMORY;
-    memset(&head, 0, sizeof head);
-    mpm__spray_magic(head.magic);
-    head.live = s->live;
-    head.deposited = s->deposited;
-    head.planes = s->planes;
-    head.real = (int64_t)sizeof(mpm_real);
-    head.tally = s->tally;
-    for (k = 0; k < s->planes; k++) memcpy(head.point[k], s->plane[k].point, sizeof head.point[k]);
-    memcpy(to, &head, sizeof head);
-    to += sizeof head;
-    mpm__spray_arrays(s, (size_t)s->live, (size_t)s->deposited, array, size);
-    for (k = 0; k < MPM__SPRAY_ARRAYS; k++) {
-        if (size[k]) memcpy(to, array[k], size[k]);
-        to += size[k];
-    }
-    return MPM_OK;
-}
-
-/* Whether a saved head fits this spray and this many bytes. */
-static inline mpm_status mpm__spray_check_head(mpm_spray *s, const mpm__spray_head *head, size_t bytes)
-{
-    void *array[MPM__SPRAY_ARRAYS];
-    size_t size[MPM__SPRAY_ARRAYS], need = sizeof *head;
-    char magic[16];
-    int k;
-    mpm__spray_magic(magic);
-    if (memcmp(magic, head->magic, sizeof magic) || head->real != (int64_t)sizeof(mpm_real))
-        return mpm_fail(&s->fault, MPM_ERR_VERSION, "saved state", (mpm_real)head->real, -1);
-    if (head->live < 0 || head->deposited < 0 || head->live > s->desc.capacity ||
-        head->deposited > s->desc.capacity || head->live + head->deposited > s->desc.capacity)
-        return mpm_fail(&s->fault, MPM_ERR_FULL, "particles of saved state", (mpm_real)head->live, -1);
-    if (head->planes != s->planes)
-        return mpm_fail(&s->fault, MPM_ERR_VERSION, "planes of saved state", (mpm_real)head->planes, -1);
-    mpm__spray_arrays(s, (size_t)head->live, (size_t)head->deposited, array, size);
-    for (k = 0; k < MPM__SPRAY_ARRAYS; k++) need += size[k];
-    if (bytes < need) return mpm_fail(&s->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
-    return MPM_OK;
-}
-
-MPM_API mpm_status mpm_spray_load(mpm_spray *s, const void *buffer, size_t bytes)
-{
-    void *array[MPM__SPRAY_ARRAYS];
-    size_t size[MPM__SPRAY_ARRAYS];
-    const char *from = (const char *)buffer + sizeof(mpm__spray_head);
-    mpm__spray_head head;
-    mpm_status status;
+    mpm_status status = MPM_OK;
+    mpm_spray_ball b;
     int32_t i;
     int k;
-    if (bytes < sizeof head) return mpm_fail(&s->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
-    memcpy(&head, buffer, sizeof head);
-    if ((status = mpm__spray_check_head(s, &head, bytes)) != MPM_OK) return status;
-    s->live = (int32_t)head.live;
-    s->deposited = (int32_t)head.deposited;
-    s->tally = head.tally;
-    for (k = 0; k < s->planes; k++) memcpy(s->plane[k].point, head.point[k], sizeof head.point[k]);
-    mpm__spray_arrays(s, (size_t)head.live, (size_t)head.deposited, array, size);
-    for (k = 0; k < MPM__SPRAY_ARRAYS; k++) {
-        if (size[k]) memcpy(array[k], from, size[k]);
-        from += size[k];
+    for (i = 0; i < s->live && status == MPM_OK; i++) {
+        mpm__spray_get(s, i, &b);
+        if ((status = mpm__spray_check_ball(&b, f)) != MPM_OK && f) f->index = i;
+    }
+    for (i = 0; i < s->deposited && status == MPM_OK; i++) {
+        const mpm_real *x = s->deposit_x + 3 * i;
+        status = mpm_want(1, f, "position in deposit", x[0] + x[1] + x[2], i);
+        if (status == MPM_OK)
+            status = mpm_want(s->deposit_radius[i] > 0, f, "radius in deposit", s->deposit_radius[i], i);
+    }
+    for (k = 0; k < s->planes && status == MPM_OK; k++) {
+        const mpm_real *x = s->plane[k].point;
+        status = mpm_want(1, f, "point of plane", x[0] + x[1] + x[2], k);
+    }
+    return status;
+}
+
+MPM_API mpm_status mpm_spray_restored(mpm_spray *s, const mpm_blob *blob)
+{
+    mpm_status status = mpm__spray_restored_counts(s, &s->fault);
+    int32_t i;
+    if (status == MPM_OK) status = mpm__spray_restored_sizes(s, blob, &s->fault);
+    if (status == MPM_OK) status = mpm__spray_restored_particles(s, &s->fault);
+    if (status != MPM_OK) {
+        s->live = s->deposited = 0;
+        memset(&s->tally, 0, sizeof s->tally);
+        s->tally.random = s->desc.seed;
     }
     /* the deposit's bins and box are made again, in the same order */
     mpm__spray_grid_clear(&s->deposit_bins, s->deposit_bins.cell, s->deposit_bins.mask + 1);
     s->deposit_radius_max = 0;
     for (i = 0; i < s->deposited; i++) mpm__spray_deposit_enter(s, i);
-    return MPM_OK;
+    return status;
 }
 
 #ifdef __cplusplus

@@ -69,7 +69,8 @@ int main(int argc, char **argv)
     const char *path = argc > 1 ? argv[1] : "06_restart.mpm";
     const mpm_units units = mpm_units_um_us_ng();
     const mpm_bond bond = mpm_bond_default(&units);
-    mpm_io_blob blobs[MPM_IO_WORLD_BLOBS + 2]; /* and one for each body */
+    mpm_blob blobs[MPM_BLOBS(2)];
+    char text[4000];
     mpm_material al;
     mpm_world whole, first, second;
     mpm_fault fault;
@@ -79,8 +80,9 @@ int main(int argc, char **argv)
     if (!begin(&whole, &al) || !run(&whole, &bond, STEPS)) return 1;
 
     if (!begin(&first, &al) || !run(&first, &bond, STEPS / 2)) return 1;
-    n = mpm_io_world_blobs(&first, blobs);
-    if (mpm_io_checkpoint_write(path, blobs, n, &fault) < 0) {
+    n = mpm_blobs(&first, blobs);
+    mpm_io_world_text(text, sizeof text, &first);
+    if (mpm_io_checkpoint_write(path, text, blobs, n, &fault) < 0) {
         printf("%s: %s\n", path, fault.field);
         return 1;
     }
@@ -88,8 +90,9 @@ int main(int argc, char **argv)
     mpm_free(&first);
 
     if (!begin(&second, &al)) return 1;
-    n = mpm_io_world_blobs(&second, blobs);
-    if (mpm_io_checkpoint_read(path, blobs, n, &fault) < 0) {
+    n = mpm_blobs(&second, blobs);
+    mpm_io_world_text(text, sizeof text, &second); /* refused if it is not the same, line by line */
+    if (mpm_io_checkpoint_read(path, text, blobs, n, &fault) < 0 || mpm_restored(&second, blobs) < 0) {
         printf("%s: %s\n", path, fault.field);
         return 1;
     }

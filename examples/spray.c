@@ -339,49 +339,40 @@ static mpm_status write_pictures(const char *folder, const mpm_spray *s, spray_c
     return status;
 }
 
-/* A checkpoint is two files: the state, and beside it (.size) how many bytes that is. */
-static mpm_status checkpoint_size(const char *path, int write, int64_t *bytes, mpm_fault *fault)
+/* ---- restart ------------------------------------------------------------------------------- */
+
+/* What must be the same for a run that goes on: the options that make the spray, one a line. */
+static const char *spray_text(const option *o, int n)
 {
-    char name[MPM_IO_PATH + 8];
-    mpm_io_blob blob;
-    blob.name = "spray bytes";
-    blob.bytes = sizeof *bytes;
-    blob.data = bytes;
-    snprintf(name, sizeof name, "%s.size", path);
-    return write ? mpm_io_checkpoint_write(name, &blob, 1, fault) : mpm_io_checkpoint_read(name, &blob, 1, fault);
+    static const char *const free[] = {"steps", "time", "out", "restart", "frames", "quiet"};
+    static char text[4096];
+    size_t used = 0;
+    int i, k;
+    for (i = 0; i < n; i++) {
+        char value[256];
+        for (k = 0; k < 6 && strcmp(o[i].name, free[k]); k++) continue;
+        if (k < 6) continue;
+        option_text(&o[i], value, sizeof value);
+        used = mpm_io_line(text, sizeof text, used, o[i].name, value);
+    }
+    return text;
 }
 
-static mpm_status write_checkpoint(const char *path, const mpm_spray *s, mpm_fault *fault)
+static mpm_status write_checkpoint(const char *path, mpm_spray *s, const option *o, int options, mpm_fault *fault)
 {
-    int64_t bytes = (int64_t)mpm_spray_saved_bytes(s);
-    mpm_io_blob blob;
-    mpm_status status;
-    blob.name = "spray";
-    blob.bytes = (size_t)bytes;
-    blob.data = malloc(blob.bytes);
-    if (!blob.data) return MPM_ERR_MEMORY;
-    status = mpm_spray_save(s, blob.data, blob.bytes);
-    if (status >= 0) status = checkpoint_size(path, 1, &bytes, fault);
-    if (status >= 0) status = mpm_io_checkpoint_write(path, &blob, 1, fault);
-    free(blob.data);
+    mpm_blob blob[MPM_SPRAY_BLOBS];
+    return mpm_io_checkpoint_write(path, spray_text(o, options), blob, mpm_spray_blobs(s, blob), fault);
+}
+
+static mpm_status read_checkpoint(const char *path, mpm_spray *s, const option *o, int options, mpm_fault *fault)
+{
+    mpm_blob blob[MPM_SPRAY_BLOBS];
+    mpm_status status = mpm_io_checkpoint_read(path, spray_text(o, options), blob, mpm_spray_blobs(s, blob), fault);
+    if (status >= 0 && (status = mpm_spray_restored(s, blob)) < 0) *fault = s->fault;
     return status;
 }
 
-static mpm_status read_checkpoint(const char *path, mpm_spray *s, mpm_fault *fault)
-{
-    int64_t bytes = 0;
-    mpm_io_blob blob;
-    mpm_status status = checkpoint_size(path, 0, &bytes, fault);
-    if (status < 0) return status;
-    blob.name = "spray";
-    blob.bytes = (size_t)bytes;
-    blob.data = malloc(blob.bytes);
-    if (!blob.data) return MPM_ERR_MEMORY;
-    status = mpm_io_checkpoint_read(path, &blob, 1, fault);
-    if (status >= 0 && (status = mpm_spray_load(s, blob.data, blob.bytes)) < 0) *fault = s->fault;
-    free(blob.data);
-    return status;
-}
+/* ---- results ------------------------------------------------------------------------------- */
 
 typedef struct result { const char *key, *text, *unit; double value; } result;
 
@@ -521,7 +512,7 @@ static mpm_status write_all(mpm_spray *s, const settings *o, const option *row, 
     mpm_status status = write_summary(o->out, r, n, row, rows, fault);
     if (status >= 0) status = write_pictures(o->out, s, c, note, fault);
     snprintf(path, sizeof path, "%s/checkpoint.bin", o->out);
-    if (status >= 0) status = write_checkpoint(path, s, fault);
+    if (status >= 0) status = write_checkpoint(path, s, row, rows, fault);
     if (status < 0 || o->quiet) return status;
     for (k = 0; k < n; k++) printf("%-44s %14.6g %s\n", r[k].text, r[k].value, r[k].unit);
     printf("%-44s %14.6g %s\n", "memory", (double)s->bytes / 1e6, "MB");
@@ -552,7 +543,7 @@ int main(int argc, char **argv)
     d.touch_user = &impacts;
     describe_in_words(row, rows, note, sizeof note);
     if (mpm_spray_init(&s, &d, NULL, 0) < 0) return complain(&s.fault);
-    if (o.restart[0] && read_checkpoint(o.restart, &s, &fault) < 0) {
+    if (o.restart[0] && read_checkpoint(o.restart, &s, row, rows, &fault) < 0) {
         fprintf(stderr, "error: --restart %s\n", o.restart);
         return complain(&fault);
     }

@@ -96,7 +96,8 @@ static void foil(mpm_contact_law law, mpm_basis basis, int order, double *v)
     d.contact.normal = MPM_NORMAL_AVERAGE;
     mpm_init(&w, &d, NULL, 0);
     for (k = 0; k < 3; k++) {
-        const mpm_real low = which[k] = (k + order) % 3, half = MPM_R(0.5);
+        const mpm_real half = MPM_R(0.5);
+        const int low = which[k] = (k + order) % 3;
         const mpm_real z = low < 1 ? MPM_R(-5.5) : low < 2 ? -half : half;
         mpm_body_desc b = scene_body(&m, mpm_box(-6, 0, z, 6, 1, low < 1 ? -half : low < 2 ? half : MPM_R(5.5)), 0.5, 0);
         b.velocity[2] = low < 1 ? 100 : low < 2 ? 0 : -100;

@@ -127,6 +127,8 @@ static void test_colours(void)
     CHECK_NEAR("DIVERGING: both sides as light", turn, 0, 3);
     equal("clamped below", mpm_draw_map_color(MPM_DRAW_DEEP, -5), mpm_draw_map_color(MPM_DRAW_DEEP, 0));
     equal("clamped above", mpm_draw_map_color(MPM_DRAW_DEEP, 5), mpm_draw_map_color(MPM_DRAW_DEEP, 1));
+    holds("neighbouring series differ", mpm_draw_series_color(0) != mpm_draw_series_color(1));
+    equal("the ninth series is the first", mpm_draw_series_color(8), mpm_draw_series_color(0));
     equal("not a number is grey", mpm_draw_map_color(MPM_DRAW_DEEP, NAN), 0x9aa0a6);
 }
 
@@ -303,6 +305,24 @@ static void test_numbers(void)
     holds("zero", strcmp(text, "0") == 0);
 }
 
+/* A bar has the map's colours from end to end, and its numbers below. */
+static void test_color_bar(void)
+{
+    mpm_draw_rect where = {20, 10, 160, 60};
+    mpm_draw_canvas c;
+    mpm_draw_canvas_init(&c, 200, 80, NULL, 0);
+    mpm_draw_color_bar(&c, where, MPM_DRAW_HEAT, 0, 1, "K");
+    equal("the bar's lower end", mpm_draw_pixel(&c, 20, 12), mpm_draw_map_color(MPM_DRAW_HEAT, 0.5 / 160));
+    equal("its middle", mpm_draw_pixel(&c, 100, 12), mpm_draw_map_color(MPM_DRAW_HEAT, 80.5 / 160));
+    equal("its upper end", mpm_draw_pixel(&c, 179, 12), mpm_draw_map_color(MPM_DRAW_HEAT, 159.5 / 160));
+    equal("nothing beside it", darkness(&c, 181, 0, 200, 20), 0);
+    holds("numbers and a label below", darkness(&c, 0, 25, 200, 80) > 30);
+    mpm_draw_fill(&c, 0xffffff);
+    mpm_draw_color_bar(&c, where, MPM_DRAW_HEAT, 1, 1, "K");
+    equal("no range, no bar", darkness(&c, 0, 0, 200, 80), 0);
+    mpm_draw_canvas_free(&c);
+}
+
 static void test_ticks(void)
 {
     mpm_draw_tick ticks[MPM_DRAW_TICKS];
@@ -384,6 +404,7 @@ int main(void)
     test_world();
     test_numbers();
     test_ticks();
+    test_color_bar();
     test_plots();
     return check_end();
 }

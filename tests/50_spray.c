@@ -27,6 +27,20 @@ static mpm_real mass_of(mpm_real radius)
 
 /* ---- restitution and sticking -------------------------------------------------------------- */
 
+/* What the paper's criterion says of a particle at this speed, alpha 1. */
+static int sticks(mpm_real speed, mpm_real gamma, mpm_real radius, mpm_real yield)
+{
+    mpm_spray_touch t;
+    memset(&t, 0, sizeof t);
+    t.normal_speed = speed;
+    t.alpha = 1;
+    t.gamma = gamma;
+    t.mass = mass_of(radius);
+    t.radius_effective = radius;
+    t.yield = yield;
+    return mpm_spray_stick_adhesion(NULL, &t);
+}
+
 static void test_contact_numbers(void)
 {
     static const mpm_real speed[5] = {5, 10, 20, 50, 100};
@@ -65,6 +79,8 @@ static void test_contact_numbers(void)
         mpm_real v = mpm_spray_stick_speed(1, gamma, mass_of(radius[i]), radius[i], y);
         CHECK_RELATIVE("sticking speed at alpha 1 [m/s]", v, critical[i], PRINTED(1e-5));
         CHECK_RELATIVE("... over alpha gamma/R", v * radius[i] / gamma, 2.2440e-7, 2e-4);
+        CHECK_EQUAL("a little slower sticks", sticks(MPM_R(0.999) * v, gamma, radius[i], y), 1);
+        CHECK_EQUAL("a little faster does not", sticks(MPM_R(1.001) * v, gamma, radius[i], y), 0);
     }
 }
 
@@ -276,6 +292,9 @@ static void test_transit(void)
         CHECK_EQUAL("the fixed point always converged", s.tally.not_converged, 0);
         mpm_spray_free(&s);
     }
+    CHECK_RELATIVE("drag at rest is Stokes' 9 mu / (2 rho R^2) [1/s]",
+                   mpm_spray_drag_rate(0, MPM_R(80e-6), 5680, MPM_R(1.1), MPM_R(25e-6)),
+                   4.5 * 1.1 * 25e-6 / (5680 * 80e-6 * 80e-6), PRINTED(1e-12));
     CHECK_EQUAL("Cd Re at rest is Stokes' 24", mpm_spray_drag_cd_re(0), 24);
     CHECK_RELATIVE("Cd Re at 100", mpm_spray_drag_cd_re(100),
                    24 * (1 + 0.1806 * pow(100, 0.6459)) + 0.4251 * 1e4 / 6980.95, PRINTED(1e-12));

@@ -148,35 +148,71 @@ static void test_run(void)
     mpm_spray_free(&s);
 }
 
-static void test_saved(void)
+/* ---- a state from elsewhere ---------------------------------------------------------------- */
+
+/* States that no step leaves, and would lead out of the memory or never end: case k, and what the fault names. */
+static const char *const crafted[] = {
+    "live", "live", "deposited", "tally.deposited", "tally.escaped", "tally.injected", "tally.step", "tally.batches",
+    "tally.pending", "tally.wait_radius", "tally.wait_speed", "velocity of particle", "radius of particle",
+    "position in deposit", "radius in deposit", "point of plane", "x", "deposit time"};
+#define CRAFTED ((int)(sizeof crafted / sizeof *crafted))
+
+static void spoil(mpm_spray *s, mpm_blob *blob, int k)
 {
-    static char buffer[2000], old[2000];
+    switch (k) {
+    case 0: s->live = -1; break;
+    case 1: s->live = 2147483647; break;
+    case 2: s->deposited = -2147483647 - 1; break;
+    case 3: s->tally.deposited++; break;
+    case 4: s->tally.escaped = INT64_MAX; break;
+    case 5: s->tally.injected = -INT64_MAX; break;
+    case 6: s->tally.step = INT64_MAX; break;
+    case 7: s->tally.batches = -INT64_MAX; break;
+    case 8: s->tally.pending = INT64_MAX; break;
+    case 9: s->tally.wait_radius = 1; break;
+    case 10: s->tally.wait_speed = (double)not_a_number(); break;
+    case 11: s->v[1] = not_a_number(); break;
+    case 12: s->radius[0] = 0; break;
+    case 13: s->deposit_x[2] = not_a_number(); break;
+    case 14: s->deposit_radius[0] = -1; break;
+    case 15: s->plane[0].point[1] = not_a_number(); break;
+    case 16: blob[0].bytes--; break;
+    case 17: blob[12].bytes += sizeof(mpm_real); break;
+    default: break;
+    }
+}
+
+static void test_restored(void)
+{
+    mpm_blob blob[MPM_SPRAY_BLOBS];
     mpm_spray s;
-    mpm_spray_ball b;
     mpm_spray_desc d = mpm_spray_desc_default();
-    size_t bytes;
-    d.batch = 0;
-    d.capacity = 2;
-    memset(&b, 0, sizeof b);
-    b.radius = MPM_R(1e-4);
-    b.density = 1000;
-    done("init", mpm_spray_init(&s, &d, NULL, 0));
-    done("add", mpm_spray_add(&s, &b));
-    bytes = mpm_spray_saved_bytes(&s);
-    CHECK_TRUE("it fits the test's buffer", bytes <= sizeof buffer);
-    CHECK_EQUAL("no room to save", mpm_spray_save(&s, buffer, bytes - 1), MPM_ERR_MEMORY);
-    CHECK_EQUAL("save", mpm_spray_save(&s, buffer, bytes), MPM_OK);
-    CHECK_EQUAL("a state cut short", mpm_spray_load(&s, buffer, bytes - 1), MPM_ERR_MEMORY);
-    CHECK_EQUAL("the whole state", mpm_spray_load(&s, buffer, bytes), MPM_OK);
-    memcpy(old, buffer, sizeof old);
-    old[10] = '9'; /* the version */
-    CHECK_EQUAL("a state of another version", mpm_spray_load(&s, old, bytes), MPM_ERR_VERSION);
-    mpm_spray_free(&s);
-    d.capacity = 1;
-    done("init", mpm_spray_init(&s, &d, NULL, 0));
-    buffer[16] = 2; /* the number in flight */
-    CHECK_EQUAL("more particles than the capacity", mpm_spray_load(&s, buffer, sizeof buffer), MPM_ERR_FULL);
-    mpm_spray_free(&s);
+    int k, n;
+    d.stand_off = MPM_R(0.03);
+    d.release[0] = d.release[1] = 50;
+    d.alpha = (mpm_real)HUGE_VAL;
+    for (k = -1; k < CRAFTED; k++) {
+        mpm_status status = mpm_spray_init(&s, &d, NULL, 0);
+        while (status >= 0 && s.tally.step < 200) status = mpm_spray_step(&s);
+        CHECK_TRUE("a spray in flight, with deposit", status >= 0 && s.live > 0 && s.deposited > 0);
+        n = mpm_spray_blobs(&s, blob);
+        CHECK_EQUAL("blobs", n, MPM_SPRAY_BLOBS - MPM_SPRAY_PLANES + 1);
+        spoil(&s, blob, k);
+        status = mpm_spray_restored(&s, blob);
+        if (k < 0) {
+            CHECK_EQUAL("a state as it was", status, MPM_OK);
+            mpm_spray_free(&s);
+            continue;
+        }
+        CHECK_TRUE(crafted[k], status == MPM_ERR_ARGUMENT || status == MPM_ERR_NAN);
+        CHECK_TRUE("... is named", !strcmp(s.fault.field, crafted[k]));
+        CHECK_TRUE("... and the spray is empty", s.live == 0 && s.deposited == 0 && s.tally.injected == 0);
+        CHECK_TRUE("... and goes on", mpm_spray_step(&s) >= 0);
+        mpm_spray_free(&s);
+    }
+    memset(&d, 0, sizeof d);
+    CHECK_EQUAL("a description of zeros", mpm_spray_check(&d, &s.fault), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... is named", !strcmp(s.fault.field, "desc (not from mpm_spray_desc_default)"));
 }
 
 int main(void)
@@ -184,6 +220,6 @@ int main(void)
     test_values();
     test_planes();
     test_run();
-    test_saved();
+    test_restored();
     return check_end();
 }

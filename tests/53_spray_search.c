@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "check.h"
+#include "spray_state.h"
 
 /* An action that has to succeed (as a function: the check macros evaluate twice). */
 static void done(const char *what, mpm_status status) { CHECK_EQUAL(what, status, MPM_OK); }
@@ -55,17 +56,6 @@ static void fill_box(mpm_spray *s, mpm_real edge, int count, mpm_real speed)
         b.density = 5680;
         if (mpm_spray_add(s, &b) != MPM_OK) return;
     }
-}
-
-static int same_state(const mpm_spray *a, const mpm_spray *b)
-{
-    size_t na = mpm_spray_saved_bytes(a), nb = mpm_spray_saved_bytes(b);
-    char *x = (char *)malloc(na), *y = (char *)malloc(nb);
-    int same = x && y && na == nb && mpm_spray_save(a, x, na) == MPM_OK && mpm_spray_save(b, y, nb) == MPM_OK &&
-               !memcmp(x, y, na);
-    free(x);
-    free(y);
-    return same;
 }
 
 /* Deepest penetration of any two particles, over the smaller radius. */

@@ -83,6 +83,7 @@ int main(void)
                                           !memcmp(whole, parts, whole_bytes));
     free(whole);
     free(parts);
+    refused("--steps 5000 --alpha 2e4 --restart " FOLDER "/checkpoint.bin", "alpha 20000 (index 4)");
     failed = spray("--gas jet-axisymmetric --alpha inf --deposit always --contact overlap --steps 3000 --frames 0 "
                    "--shape 1 --restitution 0.8 --release 10:40 --gamma12 0.7 --theta 1");
     CHECK_EQUAL("the other choices run", failed, 0);

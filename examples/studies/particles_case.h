@@ -446,49 +446,41 @@ static inline int particles_done(const particles_case *q)
 
 #define PARTICLES_CHECKPOINT 60 /* CPU seconds from one to the next */
 
-/* A number of this very scene and its frames; not of the folder. */
-static inline uint64_t particles_mark(const particles_case *q)
+/* What must be the same for a run that goes on: options, frames, the world. Test: 63_particles. */
+static inline const char *particles_text(const impact *s, const particles_case *q)
 {
-    char text[4000];
-    uint64_t h;
-    long k;
-    study_key(&q->base, 0, text, sizeof text);
-    h = study_hash(STUDY_HASH, text);
-    snprintf(text, sizeof text, ", %ld particles, %ld frames", q->count, q->out.frames);
-    h = study_hash(h, text);
-    for (k = 0; k < q->count; k++) {
-        snprintf(text, sizeof text, ", %.17g %.17g %.17g", q->center[k][0], q->center[k][1], q->center[k][2]);
-        h = study_hash(h, text);
+    static char text[1000 * (PARTICLES + 8)];
+    impact_case c = q->base;
+    option o[IMPACT_OPTIONS];
+    size_t used = 0;
+    int n = impact_options(&c, o), k;
+    for (k = 0; k < n; k++) {
+        char value[256];
+        option_text(&o[k], value, sizeof value);
+        used = mpm_io_line(text, sizeof text, used, o[k].name, value);
     }
-    return h;
-}
-
-static inline mpm_io_blob particles_blob(const char *name, void *data, size_t bytes)
-{
-    mpm_io_blob b;
-    b.name = name;
-    b.data = data;
-    b.bytes = bytes;
-    return b;
+    used = mpm_io_line_number(text, sizeof text, used, "frames", (double)q->out.frames);
+    used = mpm_io_line_number(text, sizeof text, used, "dt", (double)s->dt);
+    mpm_io_world_text(text + used, sizeof text - used, &s->world);
+    return text;
 }
 
 /* Writes the checkpoint, or reads it (nothing is changed if it is none of this scene): the world, and what is
-   counted beside it. The name of the first blob says of which scene they are. */
+   counted beside it. */
 static inline mpm_status particles_checkpoint(impact *s, particles_case *q, int write, const char *path,
                                               mpm_fault *fault)
 {
-    mpm_io_blob blob[MPM_IO_WORLD_BLOBS + PARTICLES + 7]; /* the substrate too */
-    uint64_t mark = particles_mark(q);
-    char text[20], name[40];
-    int n = 0;
-    snprintf(name, sizeof name, "scene %s", study_hash_text(mark, text, sizeof text));
-    blob[n++] = particles_blob(name, &mark, sizeof mark);
-    n += mpm_io_world_blobs(&s->world, blob + n);
-    blob[n++] = particles_blob("start", &s->start, sizeof s->start);
-    blob[n++] = particles_blob("tally", s->world.tally, sizeof s->world.tally);
-    blob[n++] = particles_blob("frame", &q->out.frame, sizeof q->out.frame);
-    blob[n++] = particles_blob("cpu seconds", &q->out.cpu, sizeof q->out.cpu);
-    return write ? mpm_io_checkpoint_write(path, blob, n, fault) : mpm_io_checkpoint_read(path, blob, n, fault);
+    static mpm_blob blob[MPM_BLOBS(PARTICLES + 1) + 3]; /* the substrate too */
+    const char *text = particles_text(s, q);
+    mpm_status status;
+    int n = mpm_blobs(&s->world, blob);
+    blob[n++] = mpm_blob_of("start", &s->start, sizeof s->start);
+    blob[n++] = mpm_blob_of("frame", &q->out.frame, sizeof q->out.frame);
+    blob[n++] = mpm_blob_of("cpu seconds", &q->out.cpu, sizeof q->out.cpu);
+    if (write) return mpm_io_checkpoint_write(path, text, blob, n, fault);
+    status = mpm_io_checkpoint_read(path, text, blob, n, fault);
+    if (status >= 0 && (status = mpm_restored(&s->world, blob)) < 0) *fault = s->world.fault;
+    return status;
 }
 
 static inline int particles_save(impact *s, particles_case *q)
@@ -514,6 +506,7 @@ static inline int particles_resume(impact *s, particles_case *q)
             if (!q->out.quiet) printf("going on from step %ld of %ld\n", s->world.steps, s->steps);
             return 1;
         }
+        if (s->world.points.count == 0) return report(&fault, path);
         mpm_io_fault_text(text, sizeof text, &fault);
         fprintf(stderr, "%s is of other options or damaged (%s): starting afresh\n", path, text);
     }

@@ -66,10 +66,10 @@
    has been dissipated fast enough: dD = dG / G_b, with G_b = G_c (1 - ln(dG / (Gdot_c dt))), and a
    node whose bodies' mean D reaches 1 carries tension.
 
-   A KNOWN LIMIT. A held pair sticks while separating and slides while approaching; each change of
-   sides costs or gives a little energy, in proportion to the step. Two elastic spheres bonded all over
-   and left to vibrate for 120 ns gained 41 % of their energy at dt = 0.1 cell/c and lost 11 % at a
-   quarter of it. Plastic impacts are short and stiff in comparison; the ledger shows the amount.
+   A KNOWN LIMIT of the thesis's scheme (MPM_SCHEME_THESIS). A held pair sticks while separating and slides while
+   approaching; each change of sides costs or gives a little energy, in proportion to the step. Two elastic spheres
+   bonded all over and left to vibrate for 120 ns gained 41 % of their energy at dt = 0.1 cell/c. In the consistent
+   scheme a pair that is held wholly is held in both directions: such spheres move as one body does, to round-off.
 
    ANOTHER. D belongs to a point, not to a pair of bodies: a surface that bonded to one body, with D of 2 or
    more, also holds the next one that touches it, even where that one's own D is 0: their mean is 1. With
@@ -320,7 +320,7 @@ static inline int mpm__bond_nearest(const mpm_world *w, const mpm_support *s)
 {
     int a, nearest = -1;
     for (a = 0; a < s->count; a++)
-        if ((w->node[s->slot[a]].flags & MPM_NODE_CONTACT) && s->N[a] > 0 && (nearest < 0 || s->N[a] > s->N[nearest])) nearest = a;
+        if ((w->node[s->slot[a]].flags & MPM_NODE_CONTACT) && s->N[a] > (nearest < 0 ? 0 : s->N[nearest])) nearest = a;
     return nearest;
 }
 

@@ -171,7 +171,8 @@ static uint64_t bits_spray(void)
     return hash;
 }
 
-/* Elastic bodies meeting askew, rough, above a wall: sums, products, quotients and roots only. */
+/* Elastic bodies meeting askew, rough, above a wall: sums, products, quotients and roots only. In the thesis's scheme
+   and in the consistent one. */
 static uint64_t bits_elastic(void)
 {
     const mpm_units u = mpm_units_um_us_ng();
@@ -195,6 +196,16 @@ static uint64_t bits_elastic(void)
     if (n == 500) hash = world_bits(&w);
     mpm_free(&w);
     return hash;
+}
+
+/* The same with bonds in the consistent scheme of contact. */
+static uint64_t bits_consistent(void)
+{
+    impact_case c = impact_case_default();
+    c.scheme = "consistent";
+    c.spacing = 0.75;
+    c.friction = 0.3;
+    return run_impact(&c, 900);
 }
 
 /* ---- what is recorded ---------------------------------------------------------------------- */

@@ -1393,7 +1393,8 @@ static inline void mpm__io_desc_text(mpm__io_page *t, const mpm_desc *d)
     static const char *const geometries[] = {MPM_GEOMETRY_LIST(MPM__IO_WORD)};
     static const char *const bases[] = {MPM_BASIS_LIST(MPM__IO_WORD)};
     static const char *const sides[] = {MPM_SIDE_LIST(MPM__IO_WORD)};
-    const int32_t geometry = (int32_t)d->geometry, basis = (int32_t)d->basis;
+    static const char *const schemes[] = {MPM_SCHEME_LIST(MPM__IO_WORD)};
+    const int32_t geometry = (int32_t)d->geometry, basis = (int32_t)d->basis, scheme = (int32_t)d->scheme;
     int32_t side[6];
     int i;
     for (i = 0; i < 6; i++) side[i] = (int32_t)d->side[i];
@@ -1405,6 +1406,7 @@ static inline void mpm__io_desc_text(mpm__io_page *t, const mpm_desc *d)
     mpm__io_words(t, "side", sides, side, 6);
     mpm__io_real(t, "wall_friction", d->wall_friction);
     mpm__io_contact_text(t, &d->contact);
+    mpm__io_words(t, "scheme", schemes, &scheme, 1);
     mpm__io_values(t, "gravity", d->gravity, NULL, 3);
     mpm__io_real(t, "mass_cutoff", d->mass_cutoff);
     mpm__io_whole(t, "user_fields", d->user_fields);

@@ -668,6 +668,10 @@ static void test_restart(void)
     second.desc.contact.friction = MPM_R(0.5);
     equal("another friction", load(path, &second, &f), MPM_ERR_VERSION);
     holds("... is named", strncmp(f.field, "contact.friction 0.5\n", 21) == 0);
+    second.desc.contact.friction = 0;
+    second.desc.scheme = (mpm_scheme)(MPM_SCHEMES - 1 - (int)second.desc.scheme);
+    equal("another scheme", load(path, &second, &f), MPM_ERR_VERSION);
+    holds("... is named", strncmp(f.field, "scheme ", 7) == 0);
     mpm_free(&whole);
     mpm_free(&first);
     mpm_free(&second);

@@ -313,11 +313,12 @@ typedef struct mpm_units {
     double time;    /* s per time unit */
 } mpm_units;
 
+/* Systems ready made. Test: 21_world. */
 MPM_API mpm_units mpm_units_si(void);         /* m, kg, s */
 MPM_API mpm_units mpm_units_um_us_ng(void);   /* um, us, ng = 1e-12 kg: stress in MPa, velocity in m/s */
 MPM_API mpm_units mpm_units_mm_ms_g(void);    /* mm, ms, g: stress in MPa, velocity in m/s */
 
-/* The SI value of one unit of a derived quantity: divide an SI number by it to enter the system. */
+/* The SI value of one unit of a derived quantity: divide an SI number by it to enter the system. Test: 21_world. */
 MPM_API double mpm_units_velocity(const mpm_units *u);        /* m/s */
 MPM_API double mpm_units_density(const mpm_units *u);         /* kg/m^3 */
 MPM_API double mpm_units_stress(const mpm_units *u);          /* Pa */

@@ -225,7 +225,8 @@ int main(int argc, char **argv)
 {
     static const recorded table[] = {
         {"elastic", bits_elastic, 0, 0, {UINT64_C(0xd737a46f4940df8a), UINT64_C(0xd8abcc28dc67ab27)}},
-        {"elastic, consistent", bits_elastic_consistent, 0, 0, {UINT64_C(0x9db9600ffe2f606c), UINT64_C(0xc640650970e9dfc5)}},
+        {"elastic, consistent", bits_elastic_consistent, 0, 0,
+         {UINT64_C(0x9db9600ffe2f606c), UINT64_C(0xc640650970e9dfc5)}},
         {"default, 400 steps", bits_default_early, 1, 0, {UINT64_C(0xed09938717caa2a8), UINT64_C(0xb30e01e4664e7ecf)}},
         {"gimp, logistic", bits_logistic, 1, 0, {UINT64_C(0x54e5becc21bdd6d5), UINT64_C(0xe63c6d3508095011)}},
         {"axisymmetric", bits_axisymmetric, 1, 0, {UINT64_C(0x7bfe76063e6fff6e), UINT64_C(0xb3b4a469dbc13a57)}},

@@ -737,7 +737,8 @@ MPM_API void mpm_free(mpm_world *w);
 
 /* Fills a shape with points, before the first step or between steps. Numbered in the order of the calls; add the
    substrate last. MPM_ERR_ARGUMENT / NAN: a field of b; MPM_ERR_OUTSIDE: a point outside the grid (points beyond a
-   symmetry plane are cut off instead); MPM_ERR_OVERLAP: with body fault.index, of whose points one lies in the shape,
+   symmetry plane are cut off instead, and those next to it weigh what is left of their cubes);
+   MPM_ERR_OVERLAP: with body fault.index, of whose points one lies in the shape,
    or (before the first step) whose shape holds a new one; MPM_ERR_FULL; MPM_ERR_MEMORY. On failure the world is
    unchanged. Test: 21_world, 26_extend. */
 MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *b);
@@ -955,6 +956,13 @@ MPM_API const char *mpm_version(void);
 #define MPM__HAIR 1e-9
 #endif
 
+/* Beside the spacing: a lattice point this near to a plane lies on it. */
+#ifdef MPM_FLOAT
+#define MPM__SNAP MPM_R(1e-4)
+#else
+#define MPM__SNAP 1e-6
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -978,6 +986,11 @@ MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt)
 }
 
 static inline int mpm__flat(const mpm_desc *d) { return d->geometry != MPM_3D; }
+
+static inline mpm_real mpm__grid_high(const mpm_desc *d, int axis)
+{
+    return d->origin[axis] + (mpm_real)d->cells[axis] * d->cell;
+}
 
 static inline size_t mpm__grid_nodes(const mpm_world *w)
 {
@@ -2506,6 +2519,28 @@ static inline void mpm__swap_points(mpm_world *w, int32_t i, int32_t j)
     w->key[j] = key;
 }
 
+/* The key of a point that lies on or beyond a closed side: it is put back on it, for nothing leaves there. -1 if it
+   is beyond an open one, or no number. */
+static inline int32_t mpm__key_at_side(mpm_world *w, int32_t i)
+{
+    const mpm_desc *d = &w->desc;
+    int32_t at[3] = {0, 0, 0};
+    int a;
+    for (a = 0; a < 3; a++) {
+        mpm_real *x = &w->points.x[a][i], t = (*x - d->origin[a]) / d->cell;
+        if (a == 1 && mpm__flat(d)) continue;
+        if (!mpm_finite(t)) return -1;
+        if (t < 0 && d->side[2 * a] == MPM_SIDE_OPEN) return -1;
+        if (t >= (mpm_real)d->cells[a] && d->side[2 * a + 1] == MPM_SIDE_OPEN) return -1;
+        if (t < 0) *x = d->origin[a];
+        if (t > (mpm_real)d->cells[a]) *x = mpm__grid_high(d, a);
+        t = t < 0 ? 0 : t < (mpm_real)d->cells[a] ? t : (mpm_real)d->cells[a];
+        at[a] = w->ghost ? (int32_t)(t + MPM_R(0.5)) : t < (mpm_real)d->cells[a] ? (int32_t)t : d->cells[a] - 1;
+    }
+    if (d->geometry == MPM_AXISYMMETRIC && !(w->points.x[0][i] > 0)) return -1; /* no ring without radius */
+    return (at[2] * w->nodes_per_axis[1] + at[1]) * w->nodes_per_axis[0] + at[0];
+}
+
 /* The base node of every active point of a body, or -1 outside the grid. A point's base is the
    lowest node it touches: of its cell with linear functions, of the nearest node's lower
    neighbour with GIMP. */
@@ -2527,7 +2562,7 @@ static inline void mpm__keys(mpm_world *w, const mpm_body *b)
            the ghost layer counted, of the same number */
         int32_t ix = (int32_t)(inside ? tx + shift : 0), iz = (int32_t)(inside ? tz + shift : 0);
         int32_t iy = flat ? 0 : (int32_t)(inside ? ty + shift : 0);
-        key[i] = inside ? (iz * ny + iy) * nx + ix : -1;
+        key[i] = inside ? (iz * ny + iy) * nx + ix : mpm__key_at_side(w, i);
     }
 }
 
@@ -3343,11 +3378,6 @@ MPM_API int mpm_shape_contains(const mpm_shape *s, mpm_real x, mpm_real y, mpm_r
     return mpm__contains(s, q, 0, 0);
 }
 
-static inline mpm_real mpm__grid_high(const mpm_desc *d, int axis)
-{
-    return d->origin[axis] + (mpm_real)d->cells[axis] * d->cell;
-}
-
 /* A walk over the lattice points of a shape, in order of z, y, x. The lattice is symmetric about
    the centre; a cylinder's or box's last layer lies half a spacing below its upper face. */
 typedef struct mpm__lattice {
@@ -3380,6 +3410,20 @@ static inline mpm__lattice mpm__lattice_begin(const mpm_desc *d, const mpm_shape
     return l;
 }
 
+/* Puts x on a symmetry plane of axis a if it lies there but for rounding; 1 if it lies behind one. */
+static inline int mpm__cut_off(const mpm_desc *d, int a, mpm_real spacing, mpm_real *x)
+{
+    const mpm_real plane[2] = {d->origin[a], mpm__grid_high(d, a)};
+    int s;
+    for (s = 0; s < 2; s++) {
+        const mpm_real depth = s ? plane[1] - *x : *x - plane[0];
+        if (d->side[2 * a + s] != MPM_SIDE_SYMMETRY) continue;
+        if (depth < -MPM__SNAP * spacing) return 1;
+        if (depth < MPM__SNAP * spacing) *x = plane[s];
+    }
+    return 0;
+}
+
 /* The next lattice point that belongs to the shape and is not cut off by a symmetry plane. */
 static inline int mpm__lattice_next(mpm__lattice *l, const mpm_desc *d, const mpm_shape *s, mpm_real *x)
 {
@@ -3392,8 +3436,7 @@ static inline int mpm__lattice_next(mpm__lattice *l, const mpm_desc *d, const mp
         for (a = 0; a < 3; a++) {
             x[a] = l->start[a] + (mpm_real)l->i[a] * l->spacing;
             if (a == 1 && mpm__flat(d)) continue;
-            if (d->side[2 * a] == MPM_SIDE_SYMMETRY && x[a] < d->origin[a]) cut = 1;
-            if (d->side[2 * a + 1] == MPM_SIDE_SYMMETRY && x[a] > mpm__grid_high(d, a)) cut = 1;
+            cut |= mpm__cut_off(d, a, l->spacing, &x[a]);
         }
         if (cut) continue;
         /* the lattice itself bounds boxes and the height of cylinders */
@@ -3487,22 +3530,60 @@ static inline uint8_t mpm__flags(const mpm_body_desc *b, const mpm_real *x, int 
     return (uint8_t)f;
 }
 
+/* How wide a lattice point's cube is along axis a, in spacings: 1, but for the layer next to a symmetry plane. At e
+   spacings from the plane its share reaches from there to half a spacing beyond the point, e + 1/2: a half on the
+   plane itself, and with what a layer behind the plane would have left on this side. */
+static inline mpm_real mpm__width(const mpm_desc *d, int a, mpm_real spacing, mpm_real x)
+{
+    const mpm_real depth[2] = {(x - d->origin[a]) / spacing, (mpm__grid_high(d, a) - x) / spacing};
+    mpm_real width = 1;
+    int s;
+    for (s = 0; s < 2; s++)
+        if (d->side[2 * a + s] == MPM_SIDE_SYMMETRY && depth[s] < 1 - MPM__SNAP &&
+            mpm_fabs(depth[s] - MPM_R(0.5)) > MPM__SNAP)
+            width += depth[s] - MPM_R(0.5);
+    return width;
+}
+
+/* The share of a full point that symmetry planes leave at x; along the radius of rings it is in the ring's area. */
+static inline mpm_real mpm__share(const mpm_desc *d, mpm_real spacing, const mpm_real *x)
+{
+    mpm_real share = 1;
+    int a;
+    for (a = d->geometry == MPM_AXISYMMETRIC ? 2 : 0; a < 3; a++)
+        if (!(a == 1 && mpm__flat(d))) share *= mpm__width(d, a, spacing, x[a]);
+    return share;
+}
+
+/* Half the cross-section of a ring through x over pi and the spacing: between x - h and x + h it is 2 x h; next to a
+   symmetry plane, from there. */
+static inline mpm_real mpm__ring(const mpm_desc *d, mpm_real spacing, mpm_real x)
+{
+    const mpm_real width = mpm__width(d, 0, spacing, x), outer = x + spacing / 2;
+    const mpm_real inner = outer - width * spacing;
+    return width < 1 || width > 1 ? (outer * outer - inner * inner) / (2 * spacing) : x;
+}
+
 /* Mass that a lattice point stands for: a cube, a unit-depth square, or a ring. */
 static inline mpm_real mpm__point_mass(const mpm_desc *d, const mpm_body_desc *b, const mpm_real *x)
 {
-    mpm_real square = b->density * b->spacing * b->spacing;
-    if (d->geometry == MPM_3D) return square * b->spacing;
-    return d->geometry == MPM_AXISYMMETRIC ? 2 * MPM_PI * x[0] * square : square;
+    mpm_real square = b->density * b->spacing * b->spacing, share = mpm__share(d, b->spacing, x);
+    if (d->geometry == MPM_3D) return square * b->spacing * share;
+    if (d->geometry == MPM_PLANE_STRAIN) return square * share;
+    return 2 * MPM_PI * mpm__ring(d, b->spacing, x[0]) * square * share;
 }
 
 /* The share of a shape that the symmetry planes leave in the grid. */
 static inline mpm_real mpm__kept(const mpm_desc *d, const mpm_body_desc *b)
 {
+    mpm__lattice l = mpm__lattice_begin(d, &b->shape, b->spacing);
     mpm_desc open = *d;
+    double kept = 0;
+    mpm_real x[3];
     int a;
     for (a = 0; a < 6; a++) open.side[a] = MPM_SIDE_OPEN;
-    return (mpm_real)mpm_shape_count(d, &b->shape, b->spacing) /
-           (mpm_real)mpm_shape_count(&open, &b->shape, b->spacing);
+    while (mpm__lattice_next(&l, d, &b->shape, x)) kept += (double)mpm__share(d, b->spacing, x);
+    return (mpm_real)kept / (mpm_real)mpm_shape_count(&open, &b->shape, b->spacing);
 }
 
 /* The true areas of the damped faces, bottom and circumference (A 3.45, 3.46). */
@@ -3538,9 +3619,11 @@ static inline int mpm__axis_outside(const mpm_desc *d, const mpm_real *x)
     int a;
     if (d->geometry == MPM_AXISYMMETRIC && !(x[0] > 0)) return 0; /* a ring without mass or radius */
     for (a = 0; a < 3; a++) {
-        mpm_real t = (x[a] - d->origin[a]) * (1 / d->cell);
+        const mpm_real t = (x[a] - d->origin[a]) * (1 / d->cell);
+        const mpm_real cells = (mpm_real)d->cells[a], below = d->side[2 * a] == MPM_SIDE_OPEN ? 0 : MPM__SNAP;
         if (a == 1 && mpm__flat(d)) continue;
-        if (!(t >= 0 && t < (mpm_real)d->cells[a])) return a;
+        if (!(t >= -below)) return a;
+        if (d->side[2 * a + 1] == MPM_SIDE_OPEN ? !(t < cells) : !(t <= cells + MPM__SNAP)) return a;
     }
     return -1;
 }
@@ -3583,8 +3666,10 @@ static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
     mpm_status s;
     mpm_real x[3];
     while (mpm__lattice_next(&l, &w->desc, &d->shape, x)) {
+        const mpm_real mass = mpm__point_mass(&w->desc, d, x);
+        if (w->desc.geometry == MPM_AXISYMMETRIC && mass > 0 && !(x[0] > 0)) x[0] = d->spacing / 3; /* disc's middle */
         if ((s = mpm__place_check(w, w->bodies, x, w->bodies, f)) != MPM_OK) return s;
-        mpm__put_point(w, d, i++, x, mpm__point_mass(&w->desc, d, x), mpm__flags(d, x, mpm__flat(&w->desc)));
+        mpm__put_point(w, d, i++, x, mass, mpm__flags(d, x, mpm__flat(&w->desc)));
     }
     b->count = i - w->points.count;
     return MPM_OK;

@@ -1188,9 +1188,9 @@ static inline const char *mpm__io_text_differs(FILE *in, uint64_t n, const char 
     const char *start = text, *at = text;
     for (*line = 1; n > 0; n--) {
         const int c = fgetc(in);
-        const unsigned char byte = (unsigned char)c;
-        if (c == EOF || *at == 0 || byte != (unsigned char)*at) return start;
-        *crc = mpm__io_crc(*crc, &byte, 1);
+        const unsigned char octet = (unsigned char)c;
+        if (c == EOF || *at == 0 || octet != (unsigned char)*at) return start;
+        *crc = mpm__io_crc(*crc, &octet, 1);
         if (*at++ != '\n') continue;
         start = at;
         ++*line;

@@ -462,7 +462,7 @@ typedef struct mpm__ptw_bounds {
    functions named here and a row of mpm__ptw_laws. */
 typedef struct mpm__ptw_law {
     mpm_strength strength;
-    mpm_status (*check)(const mpm_material *m, mpm_fault *fault);  /* the numbers it reads */
+    mpm_status (*judge)(const mpm_material *m, mpm_fault *fault);  /* the numbers it reads */
     mpm_flow (*flow)(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p); /* below melting */
     void (*bound)(const mpm_material *m, mpm__ptw_bounds *b);      /* fills zeros; NULL: none is known */
     int (*preset)(mpm_material *m, const char *metal);             /* its set for a metal, 0: none; NULL: no sets */
@@ -2164,7 +2164,7 @@ MPM_API mpm_status mpm_material_check(const mpm_material *m, mpm_fault *fault)
     MPM__PTW_REQUIRE(mpm__ptw_within("viscosity_quadratic", m->viscosity_quadratic, 0, big, fault));
     MPM__PTW_REQUIRE(mpm__ptw_check_shear(m, fault));
     MPM__PTW_REQUIRE(mpm__ptw_check_melt_and_eos(m, fault));
-    return mpm__ptw_law_of(m->strength)->check(m, fault);
+    return mpm__ptw_law_of(m->strength)->judge(m, fault);
 }
 
 #ifdef __cplusplus

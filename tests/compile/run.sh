@@ -53,7 +53,37 @@ for h in $headers; do
         fi
     done
 done
-for tool in gcc clang g++ clang++ nm; do
+# After headers that take short words as macros: each header and mpm.c, the declarations alone and all of it.
+hostile() { # compiler, standard, what comes first, language
+    for h in $headers mpm.c; do
+        printf '%b\n#include "%s"\n' "$3" "$h" >"$dir/user.c"
+        printf '#define MPM_IMPLEMENTATION\n%b\n#include "%s"\n' "$3" "$h" >"$dir/whole.c"
+        for part in user whole; do
+            check "$h ($part) after others' macros, $1 $2" $1 -std=$2 $4 -fsyntax-only -w -I. "$dir/$part.c"
+        done
+    done
+}
+for cc in gcc clang; do
+    command -v $cc >/dev/null || continue
+    hostile $cc gnu99 '#include "tests/compile/hostile.h"' '-x c'
+    hostile $cc gnu99 '#include <complex.h>\n#include <tgmath.h>\n#include <iso646.h>' '-x c'
+done
+for cxx in g++ clang++; do
+    command -v $cxx >/dev/null || continue
+    hostile $cxx gnu++11 '#include "tests/compile/hostile.h"' '-x c++'
+done
+# For Windows, with what a Windows program includes.
+windows=x86_64-w64-mingw32-gcc
+if command -v $windows >/dev/null; then
+    hostile $windows c99 '#include <windows.h>' '-x c'
+    hostile $windows c99 '#define WIN32_LEAN_AND_MEAN\n#include <windows.h>' '-x c'
+    hostile $windows c99 '#include "tests/compile/hostile.h"' '-x c'
+    check "mpm.c by $windows" $windows -std=c99 $strict -c mpm.c -o "$dir/mpm.o"
+    for p in impact taylor spray material; do
+        check "$p by $windows" $windows -std=c99 -I. -Iexamples "examples/$p.c" -o "$dir/$p.exe" -lm
+    done
+fi
+for tool in gcc clang g++ clang++ nm $windows; do
     command -v $tool >/dev/null || echo "skip - $tool is not installed: its compile tests were not run"
 done
 # Units compiled with different real types must not link.

@@ -49,6 +49,7 @@
      MPM_STATIC           IMPL    every function is static inline; implies MPM_IMPLEMENTATION.
      MPM_MALLOC(n), MPM_FREE(p)  IMPL  used only where the caller passes NULL for memory.
      MPM_BLOCK            IMPL    points per constitutive block (default 64).
+     MPM_NO_INLINE        IMPL    the kernels are not inlined by force: slower, but quick to compile.
 
    CONVENTIONS
      Units        any consistent system. um, us, ng is the natural one for cold spray: then stress
@@ -943,7 +944,7 @@ MPM_API const char *mpm_version(void);
 
 /* Inlining turns the support of the shape function and the geometry, passed as constants, into
    specialised code: one source for linear and GIMP, 3D, plane strain and axisymmetry. */
-#if defined(__GNUC__) || defined(__clang__)
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(MPM_NO_INLINE)
 #define MPM__KERNEL static inline __attribute__((always_inline))
 #else
 #define MPM__KERNEL static inline

@@ -33,6 +33,8 @@ static void change_desc(fuzz *f, mpm_spray_desc *d, mpm_spray_plane *plane)
     fuzz_reals(f, &d->dt, 3);
     FUZZ_CHOICE(f, d->iterations);
     FUZZ_CHOICE(f, d->contacts_max);
+    if (d->iterations > 1000) d->iterations = 1000; /* as many loops as are asked for */
+    if (d->contacts_max > 1000) d->contacts_max = 1000;
     FUZZ_CHOICE(f, d->search);
     d->capacity = fuzz_int(f, d->capacity);
     fuzz_reals(f, &d->target_radius, 3);

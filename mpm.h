@@ -49,6 +49,7 @@
      MPM_STATIC           IMPL    every function is static inline; implies MPM_IMPLEMENTATION.
      MPM_MALLOC(n), MPM_FREE(p)  IMPL  used only where the caller passes NULL for memory.
      MPM_BLOCK            IMPL    points per constitutive block (default 64).
+     MPM_NO_INLINE        IMPL    the kernels are not inlined by force: slower, but quick to compile.
 
    CONVENTIONS
      Units        any consistent system. um, us, ng is the natural one for cold spray: then stress
@@ -943,7 +944,7 @@ MPM_API const char *mpm_version(void);
 
 /* Inlining turns the support of the shape function and the geometry, passed as constants, into
    specialised code: one source for linear and GIMP, 3D, plane strain and axisymmetry. */
-#if defined(__GNUC__) || defined(__clang__)
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(MPM_NO_INLINE)
 #define MPM__KERNEL static inline __attribute__((always_inline))
 #else
 #define MPM__KERNEL static inline
@@ -971,7 +972,7 @@ extern "C" {
 
 MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt)
 {
-    mpm_status s = mpm_locate(w, dt);
+    mpm_status s = mpm_locate(w, dt), stressed;
     if (s < 0) return s;
     mpm_p2g(w);
     mpm_forces(w);
@@ -980,7 +981,8 @@ MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt)
     mpm_contact_apply(w);
     mpm_g2p(w);
     mpm_musl(w);
-    if (mpm_stress(w) < 0) return w->fault.status;
+    stressed = mpm_stress(w);
+    if (stressed < 0) return stressed;
     mpm_move(w);
     return s;
 }
@@ -2324,6 +2326,7 @@ static inline mpm_status mpm__constitute(mpm_world *w, const mpm_body *body, int
 {
     mpm_points *q = &w->points;
     mpm_real *rho = q->density + first, worst = 0;
+    const mpm_status last = w->fault.status;
     mpm_block b;
     mpm_status s;
     int i, p;
@@ -2355,8 +2358,11 @@ static inline mpm_status mpm__constitute(mpm_world *w, const mpm_body *body, int
     for (i = 0; i < MPM_USER_FIELDS; i++) b.user[i] = i < w->desc.user_fields ? q->user[i] + first : NULL;
     b.tally = w->tally;
     b.fault = &w->fault;
+    w->fault.status = MPM_OK;
     s = body->desc.stress(body->desc.material, &b);
+    if (s < 0 && w->fault.status >= 0) mpm_fail(&w->fault, s, "stress law of a body", 0, 0);
     if (s < 0) w->fault.index += first;
+    else w->fault.status = last;
     if (s > 0) w->notices++;
     return s;
 }
@@ -3428,15 +3434,16 @@ static inline int mpm__cut_off(const mpm_desc *d, int a, mpm_real spacing, mpm_r
 static inline int mpm__lattice_next(mpm__lattice *l, const mpm_desc *d, const mpm_shape *s, mpm_real *x)
 {
     for (;;) {
-        int a, cut = 0;
+        int a, b, cut = 0;
         for (a = 0; ++l->i[a] == l->n[a]; a++) {
             if (a == 2) return 0;
             l->i[a] = 0;
         }
-        for (a = 0; a < 3; a++) {
+        for (a = 2; a >= 0 && !cut; a--) {
             x[a] = l->start[a] + (mpm_real)l->i[a] * l->spacing;
             if (a == 1 && mpm__flat(d)) continue;
-            cut |= mpm__cut_off(d, a, l->spacing, &x[a]);
+            cut = mpm__cut_off(d, a, l->spacing, &x[a]);
+            for (b = 0; cut && b < a; b++) l->i[b] = l->n[b] - 1; /* and with it the rest of its row or layer */
         }
         if (cut) continue;
         /* the lattice itself bounds boxes and the height of cylinders */
@@ -3453,17 +3460,25 @@ static inline int mpm__lattice_next(mpm__lattice *l, const mpm_desc *d, const mp
     }
 }
 
-MPM_API int32_t mpm_shape_count(const mpm_desc *d, const mpm_shape *s, mpm_real spacing)
+/* Whether the lattice of a shape can be counted. */
+static inline int mpm__countable(const mpm_desc *d, const mpm_shape *s, mpm_real spacing)
 {
     mpm__lattice l;
-    mpm_real x[3];
-    int32_t n = 0;
     int a;
     if (!(spacing > 0)) return 0;
     for (a = 0; a < 3; a++)
         if (!(s->half[a] > 0 && s->half[a] / spacing < 1e6)) return 0;
     l = mpm__lattice_begin(d, s, spacing);
-    if ((double)l.n[0] * l.n[1] * l.n[2] > 2147483647.0) return 0;
+    return (double)l.n[0] * l.n[1] * l.n[2] <= 2147483647.0;
+}
+
+MPM_API int32_t mpm_shape_count(const mpm_desc *d, const mpm_shape *s, mpm_real spacing)
+{
+    mpm__lattice l;
+    mpm_real x[3];
+    int32_t n = 0;
+    if (!mpm__countable(d, s, spacing)) return 0;
+    l = mpm__lattice_begin(d, s, spacing);
     while (mpm__lattice_next(&l, d, s, x)) n++;
     return n;
 }
@@ -3645,13 +3660,19 @@ static inline void mpm__put_point(mpm_world *w, const mpm_body_desc *d, int32_t 
     p->flags[i] = flags;
 }
 
+/* A point outside the grid along axis a. */
+static inline mpm_status mpm__outside(int a, const mpm_real *x, long index, mpm_fault *f)
+{
+    static const char *const name[3] = {"x of a point", "y of a point", "z of a point"};
+    return mpm_fail(f, MPM_ERR_OUTSIDE, name[a], x[a], index);
+}
+
 /* Whether a point of body `own` may be placed at x: inside the grid, in no other body's shape. */
 static inline mpm_status mpm__place_check(const mpm_world *w, int32_t own, const mpm_real *x, long index, mpm_fault *f)
 {
-    static const char *const name[3] = {"x of a point", "y of a point", "z of a point"};
     const int a = mpm__axis_outside(&w->desc, x);
     int32_t other;
-    if (a >= 0) return mpm_fail(f, MPM_ERR_OUTSIDE, name[a], x[a], index);
+    if (a >= 0) return mpm__outside(a, x, index, f);
     if ((other = mpm__body_at(w, x, own)) >= 0)
         return mpm_fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
     return MPM_OK;
@@ -3737,6 +3758,23 @@ static inline mpm_status mpm__body_join(mpm_world *w, mpm_body *b)
     return s;
 }
 
+/* How many points a body will have; it ends at the first that lies outside the grid, so that a shape far larger than
+   the grid is not walked through. */
+static inline mpm_status mpm__count_inside(const mpm_desc *d, const mpm_body_desc *b, int32_t *count, mpm_fault *f)
+{
+    mpm__lattice l;
+    mpm_real x[3];
+    *count = 0;
+    if (!mpm__countable(d, &b->shape, b->spacing)) return MPM_OK;
+    l = mpm__lattice_begin(d, &b->shape, b->spacing);
+    while (mpm__lattice_next(&l, d, &b->shape, x)) {
+        const int a = mpm__axis_outside(d, x);
+        if (a >= 0) return mpm__outside(a, x, *count, f);
+        ++*count;
+    }
+    return MPM_OK;
+}
+
 MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *desc)
 {
     const int faces = desc->shape.kind == MPM_SHAPE_CYLINDER || desc->shape.kind == MPM_SHAPE_BOX;
@@ -3750,7 +3788,7 @@ MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *desc)
         return s;
     if ((other = mpm__point_inside(w, &desc->shape)) >= 0)
         return mpm_fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
-    count = mpm_shape_count(&w->desc, &desc->shape, desc->spacing);
+    if ((s = mpm__count_inside(&w->desc, desc, &count, f)) != MPM_OK) return s;
     if (count == 0) return mpm_fail(f, MPM_ERR_ARGUMENT, "shape (holds no point at spacing)", desc->spacing, -1);
     if ((s = mpm__room(w, count, 1, 0, 0)) != MPM_OK) return s;
     b.desc = *desc;

@@ -406,7 +406,7 @@ MPM_API void mpm_bond_nodes(const mpm_bond *b, mpm_world *w)
 
 MPM_API mpm_status mpm_bond_step(const mpm_bond *b, mpm_world *w, mpm_real dt)
 {
-    mpm_status s = mpm_locate(w, dt);
+    mpm_status s = mpm_locate(w, dt), stressed;
     if (s < 0) return s;
     mpm_p2g(w);
     mpm_forces(w);
@@ -417,7 +417,8 @@ MPM_API mpm_status mpm_bond_step(const mpm_bond *b, mpm_world *w, mpm_real dt)
     mpm_contact_apply(w);
     mpm_g2p(w);
     mpm_musl(w);
-    if (mpm_stress(w) < 0) return w->fault.status;
+    stressed = mpm_stress(w);
+    if (stressed < 0) return stressed;
     mpm_move(w);
     return s;
 }

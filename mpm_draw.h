@@ -823,7 +823,8 @@ MPM_API int mpm_draw_ticks(double low, double high, int is_log, int want, mpm_dr
     double step = mpm_draw_nice((high - low) / (want > 2 ? want : 2)), k;
     double largest = fabs(low) > fabs(high) ? fabs(low) : fabs(high);
     int n = 0;
-    if (is_log) return mpm__draw_log_ticks(low, high, ticks);
+    if (!(low < high && high - low < 1e300)) return 0; /* NaN too */
+    if (is_log) return low > -400 && high < 400 ? mpm__draw_log_ticks(low, high, ticks) : 0;
     if (step * (want > 2 ? want : 2) < 0.999 * (high - low)) step = mpm_draw_nice(2.51 * step);
     for (k = ceil(low / step - 1e-6); k * step <= high + 1e-6 * step && n < MPM_DRAW_TICKS; k++) {
         ticks[n].at = k * step;

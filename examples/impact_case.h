@@ -269,6 +269,7 @@ static inline int impact_build(impact *s, const impact_case *c, mpm_desc d, cons
 {
     mpm_body_desc particle, substrate;
     mpm_status status;
+    double steps;
     long k;
     int a;
     for (a = 0; a < 2; a++)
@@ -288,7 +289,12 @@ static inline int impact_build(impact *s, const impact_case *c, mpm_desc d, cons
     }
     s->bond = impact_bond(c);
     s->dt = (mpm_real)(c->dt_factor * 0.5) / (particle.wave_p > substrate.wave_p ? particle.wave_p : substrate.wave_p);
-    s->steps = (long)ceil(c->time * 1e-3 / (double)s->dt - 1e-9);
+    steps = ceil(c->time * 1e-3 / (double)s->dt - 1e-9); /* dt may be 0 or tiny: then this is huge, or infinite */
+    if (!case_wants(steps < 1e9, "dt-factor", c->dt_factor, "makes more than 1e9 steps", message, n)) {
+        mpm_free(&s->world);
+        return 0;
+    }
+    s->steps = (long)steps;
     s->start = mpm_body_totals(&s->world, -1);
     return 1;
 }

@@ -155,6 +155,7 @@ static inline int taylor_begin(taylor *s, const taylor_case *c, char *message, s
     mpm_body_desc bar;
     mpm_desc d;
     mpm_status status;
+    double steps;
     memset(s, 0, sizeof *s);
     if (!taylor_check(c, message, n) || !taylor_material(&s->material, c, message, n)) return 0;
     s->radius = c->diameter / 2;
@@ -173,7 +174,12 @@ static inline int taylor_begin(taylor *s, const taylor_case *c, char *message, s
         return 0;
     }
     s->dt = mpm_time_step(&s->world, (mpm_real)c->dt_factor);
-    s->steps = (long)ceil(c->time * 1e-3 / (double)s->dt - 1e-9);
+    steps = ceil(c->time * 1e-3 / (double)s->dt - 1e-9); /* dt may be 0 or tiny: then this is huge, or infinite */
+    if (!case_wants(steps < 1e9, "dt-factor", c->dt_factor, "makes more than 1e9 steps", message, n)) {
+        mpm_free(&s->world);
+        return 0;
+    }
+    s->steps = (long)steps;
     s->start = mpm_body_totals(&s->world, -1);
     return 1;
 }

@@ -287,6 +287,74 @@ static void labels(void)
     mpm_free(&w);
 }
 
+static long asked; /* how often the shape below was */
+
+static int round_of_10000(void *context, const mpm_real x[3])
+{
+    (void)context;
+    asked++;
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] < MPM_R(1e8);
+}
+
+/* A body far larger than the grid is refused at its first point outside, not walked through; what mirrors cut off is
+   passed over row by row. */
+static void huge(void)
+{
+    const mpm_real low[3] = {-10000, -1, -10000}, high[3] = {10000, 1, 10000};
+    mpm_desc d = scene_grid(1, 10, 10, 10, 0, 0, 0);
+    mpm_body_desc b = mpm_body_desc_default();
+    mpm_world w;
+    int a;
+    b.shape = mpm_shape_user(round_of_10000, NULL, low, high);
+    b.spacing = MPM_R(0.5);
+    b.density = 1;
+    d.geometry = MPM_PLANE_STRAIN;
+    d.cells[1] = 2147483647; /* not read in the plane */
+    CHECK_TRUE("in two dimensions cells[1] may be anything", mpm_bytes(&d) > 0);
+    mpm_init(&w, &d, NULL, 0);
+    CHECK_EQUAL("disc of 20,000 spacings in a grid of 20: refused", mpm_body_add(&w, &b), MPM_ERR_OUTSIDE);
+    CHECK_TRUE("... after a few rows", asked > 0 && asked < 1000000);
+    mpm_free(&w);
+    for (a = 0; a < 6; a++) d.side[a] = MPM_SIDE_SYMMETRY;
+    asked = 0;
+    CHECK_EQUAL("between mirrors: what is left", mpm_shape_count(&d, &b.shape, b.spacing), 400);
+    CHECK_TRUE("... nothing else was asked for", asked < 1000);
+}
+
+static mpm_status silent(const void *material, const mpm_block *block)
+{
+    (void)material;
+    (void)block;
+    return MPM_ERR_STATE;
+}
+
+static mpm_status two_words(const void *material, const mpm_block *block)
+{
+    mpm_fail(block->fault, MPM_ERR_NAN, "two words", 7, 1);
+    return silent(material, block);
+}
+
+/* A law that fails stops the step with its status, whether it says why or not. */
+static void laws_fail(void)
+{
+    mpm_desc d = scene_grid(1, 6, 6, 6, 0, 0, 0);
+    mpm_body_desc b = mpm_body_desc_default();
+    mpm_world w;
+    b.shape = mpm_sphere(3, 3, 3, 1);
+    b.spacing = MPM_R(0.5);
+    b.density = 1;
+    b.stress = silent;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &b);
+    CHECK_EQUAL("law without a fault: the step says so", mpm_step(&w, MPM_R(0.1)), MPM_ERR_STATE);
+    CHECK_EQUAL("... and the world's fault", w.fault.status, MPM_ERR_STATE);
+    CHECK_TRUE("... with a field", w.fault.field != NULL);
+    w.body[0].desc.stress = two_words;
+    CHECK_EQUAL("law with two answers: its status counts", mpm_step(&w, MPM_R(0.1)), MPM_ERR_STATE);
+    CHECK_EQUAL("... its fault stays", w.fault.value, 7);
+    mpm_free(&w);
+}
+
 int main(void)
 {
     bad_descriptions();
@@ -296,5 +364,7 @@ int main(void)
     retirement();
     units();
     labels();
+    huge();
+    laws_fail();
     return check_end();
 }

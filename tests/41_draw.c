@@ -338,6 +338,9 @@ static void test_ticks(void)
     holds("large numbers", strcmp(ticks[1].text, "1e6") == 0);
     mpm_draw_ticks(0.001, 0.0016, 0, 4, ticks);
     holds("small ones with the decimals of their step", strcmp(ticks[1].text, "0.0012") == 0);
+    equal("no axis, no ticks: not a number", mpm_draw_ticks(mpm_sqrt(-1), 1, 1, 4, ticks), 0);
+    equal("... from high to low", mpm_draw_ticks(1, 0, 0, 4, ticks), 0);
+    equal("... powers beyond any number", mpm_draw_ticks(-1e300, 1e300, 1, 4, ticks), 0);
 }
 
 /* ---- scatter and plot ---------------------------------------------------------------------- */

@@ -167,6 +167,8 @@ int main(void)
     refused("--diameter -14", "-14");
     refused("--velocity nan", "nan");
     refused("--cell 0", "0");
+    refused("--dt-factor 1e-300", "1e-300");
+    refused("--dt-factor 5e-324", "dt-factor");
     refused("--spacing 2", "2");
     refused("--gap -3", "overlap");
     refused("--margin -0.6", "outside");

@@ -112,7 +112,7 @@ extern "C" {
 /* How a trial stress beyond the flow stress comes back to it. */
 #define MPM_RETURN_LIST(X)                                                                 \
     X(MPM_RETURN_CONSISTENT, "consistent", "increment and the rate it implies satisfy the flow law together") \
-    X(MPM_RETURN_STAGED, "staged", "A6 - A8: one explicit estimate, factor capped at 1, for comparison")
+    X(MPM_RETURN_STAGED, "staged", "A6 - A8: one explicit estimate, factor at most 1; needs a user field")
 
 /* How stress follows a rotating material. */
 #define MPM_ROTATION_LIST(X)                                                               \
@@ -371,9 +371,11 @@ MPM_API void mpm_material_wave_speeds(const mpm_material *m, mpm_real density, m
    material  a const mpm_material *, valid under mpm_material_check; only read, so that bodies, worlds
              and threads may share one
    The block's tally, unless it is NULL, counts under MPM_TALLY_*.
+   A staged return keeps each point's flow stress in its first user field: desc.user_fields must be 1 or more.
    Returns MPM_OK; MPM_CLAMPED if a shear modulus was bounded; MPM_NOT_CONVERGED if a return ended
    at its iteration cap (bracketed: the value is usable), or a caller's equation of
-   state did; MPM_ERR_ARGUMENT (count < 0, dt <= 0, a material that mpm_material_default never filled);
+   state did; MPM_ERR_ARGUMENT (count < 0, dt <= 0, a material that mpm_material_default never filled, a
+   staged return without a user field);
    MPM_ERR_NAN, MPM_ERR_STATE with the first bad point in block->fault. Blocks of up to 64 points
    are unchanged on failure; of longer ones, the points before the bad group of 64 are updated.
    Test: 11_update. */
@@ -1176,8 +1178,8 @@ static inline mpm_flow mpm__ptw_flow(const mpm_material *m, const mpm__ptw_share
     return p->state.temperature >= p->melt ? f : h->law->flow(m, h, p);
 }
 
-/* The bound of the material's strength. The staged return yields at the last step's rate: only the value at zero
-   strain (tau_y >= yinf of PTW) is used there. The factor below 1 covers rounding. */
+/* The bound of the material's strength. The staged return yields at the flow stress of an earlier step: only the value
+   at zero strain (tau_y >= yinf of PTW) is used there. The factor below 1 covers rounding. */
 static inline mpm__ptw_bounds mpm__ptw_bound(const mpm_material *m, const mpm__ptw_shared *h)
 {
     const mpm_real safe = 1 - 64 * MPM_EPSILON;
@@ -1355,7 +1357,8 @@ typedef struct mpm__ptw_lanes {
     mpm_real shear[MPM__PTW_LANES];       /* mu */
     mpm_real mises2[MPM__PTW_LANES];      /* square of the trial von Mises stress */
     mpm_real increment[MPM__PTW_LANES];   /* plastic strain increment */
-    mpm_real flow[MPM__PTW_LANES];        /* von Mises stress after the return */
+    mpm_real dissipated[MPM__PTW_LANES];  /* plastic work per volume of the increment */
+    mpm_real staged[MPM__PTW_LANES];      /* flow stress that a staged return leaves to the next step */
     int yielding[MPM__PTW_LANES], yield_count;  /* points that were returned */
 } mpm__ptw_lanes;
 
@@ -1702,22 +1705,24 @@ static inline mpm_real mpm__ptw_effective(const mpm__ptw_lanes *a, int i)
     return mpm_sqrt((n2 + 2 * t2) * 2 / 3);
 }
 
-/* The staged return: d = (sigma* - sigma_y)/(3 mu + E_p) (A6) with the flow stress of level k, then the flow stress
-   at the strain and rate it gives (A7), s = min(sigma_y/sigma*, 1) s* (A8). The flow stress of level k is taken at the
-   rate of the last step or, where nothing flowed then, at the rate `total` of the whole deviatoric strain: taken at
-   rate 0, points on their way to yield would flow again and again, the more often the smaller the step. Even so the
-   scheme loses its way when 3 mu d is small against the rate's share of the flow stress (test 11_update "staged").
-   Sets q->d and returns the stress returned to. */
-static inline mpm_real mpm__ptw_stage(const mpm_material *m, const mpm__ptw_shared *h,
-                                      mpm__ptw_search *q, mpm_real total, mpm_real per_step)
+/* The staged return of one lane: d = (sigma* - sigma_y)/(3 mu + E_p) (A6) with the flow stress sigma_y that the last
+   return left, then the flow stress at the strain and rate it gives (A7), s = min(sigma_y/sigma*, 1) s* (A8). Before
+   its first return a point has none: the flow stress at the rate `total` of the whole deviatoric strain stands for it.
+   Sets q->d and a->staged; returns the stress returned to. */
+static inline mpm_real mpm__ptw_stage(const mpm_material *m, const mpm__ptw_shared *h, const mpm_block *b,
+                                      mpm__ptw_lanes *a, mpm__ptw_search *q)
 {
+    mpm_real per_step = 1 / b->dt, left = b->user[0][a->first + q->lane];
     mpm_flow f;
-    if (!(q->point.state.plastic_rate > 0)) q->point.state.plastic_rate = total;
+    if (!(q->point.state.plastic_rate > 0))
+        q->point.state.plastic_rate = mpm__ptw_effective(a, q->lane) * per_step;
     f = mpm__ptw_flow(m, h, &q->point);
+    if (left > 0 && f.stress > 0) f.stress = left;
     q->d = 0;
     if (q->mises <= f.stress) return q->mises;
     q->d = (q->mises - f.stress) / (3 * q->point.shear + f.strain_slope);
-    return mpm__ptw_min(mpm__ptw_flow_at(m, h, q, q->d, per_step).stress, q->mises);
+    a->staged[q->lane] = mpm__ptw_flow_at(m, h, q, q->d, per_step).stress;
+    return mpm__ptw_min(a->staged[q->lane], q->mises);
 }
 
 /* Lists the lanes that may yield, skipping solid ones below any flow stress. */
@@ -1739,6 +1744,19 @@ static inline int mpm__ptw_suspects(const mpm_material *m, const mpm__ptw_shared
     return n;
 }
 
+/* Plastic work per volume of lane i whose deviator comes back to factor s*: what the strain puts in less what stays
+   elastic, (s_k + s_k+1) : (s* - s_k+1)/(4 mu). sigma d is another amount: sigma* - sigma is not 3 mu d here. */
+static inline mpm_real mpm__ptw_staged_work(const mpm__ptw_lanes *a, int i, mpm_real factor)
+{
+    mpm_real normal = 0, shear = 0;
+    int j;
+    for (j = 0; j < 3; j++) {
+        normal += (a->rotated[j][i] + factor * a->trial[j][i]) * a->trial[j][i];
+        shear += (a->rotated[j + 3][i] + factor * a->trial[j + 3][i]) * a->trial[j + 3][i];
+    }
+    return (1 - factor) * (normal + 2 * shear) / (4 * a->shear[i]);
+}
+
 /* Takes the answer of a search: increment, flow stress and the scaled deviator s = sigma_y/sigma* s* (A8) go to *a. */
 static inline void mpm__ptw_take(const mpm_material *m, const mpm_block *b, mpm__ptw_lanes *a,
                                  const mpm__ptw_search *q, mpm_real flow, mpm_real per_step)
@@ -1747,9 +1765,9 @@ static inline void mpm__ptw_take(const mpm_material *m, const mpm_block *b, mpm_
     mpm_real factor;
     if (!(q->d > 0)) return;
     factor = flow / q->mises;
-    for (j = 0; j < 6; j++) a->trial[j][i] *= factor;
     a->increment[i] = q->d;
-    a->flow[i] = flow;
+    a->dissipated[i] = m->mapping == MPM_RETURN_STAGED ? mpm__ptw_staged_work(a, i, factor) : flow * q->d;
+    for (j = 0; j < 6; j++) a->trial[j][i] *= factor;
     a->yielding[a->yield_count++] = i;
     if (m->strength == MPM_STRENGTH_PTW && !m->erf_literal &&
         mpm__ptw_overdriven(&q->point, q->d * per_step))
@@ -1813,8 +1831,7 @@ static inline mpm_status mpm__ptw_yield(const mpm_material *m, const mpm__ptw_sh
     }
     if (!staged) capped = mpm__ptw_search_all(m, h, search, n, per_step);
     for (i = 0, q = search; i < n; i++, q++) {
-        mpm_real flow = staged ? mpm__ptw_stage(m, h, q, mpm__ptw_effective(a, list[i]) * per_step, per_step)
-                               : mpm__ptw_returned(q);
+        mpm_real flow = staged ? mpm__ptw_stage(m, h, b, a, q) : mpm__ptw_returned(q);
         if (!mpm_finite(q->d) || !mpm_finite(flow))
             return mpm_fail(b->fault, MPM_ERR_NAN, "flow stress of point", q->d, a->first + q->lane);
         mpm__ptw_take(m, b, a, q, flow, per_step);
@@ -1832,10 +1849,11 @@ static inline void mpm__ptw_commit(const mpm_material *m, const mpm_block *b, co
     for (i = 0; i < a->count; i++) b->plastic_rate[a->first + i] = 0;
     for (y = 0; y < a->yield_count; y++) {
         int k = a->first + a->yielding[y];
-        mpm_real d = a->increment[a->yielding[y]], work = a->flow[a->yielding[y]] * d;
+        mpm_real d = a->increment[a->yielding[y]], work = a->dissipated[a->yielding[y]];
         b->plastic_rate[k] = d * per_step;
         b->plastic_strain[k] += d;
         b->plastic_work[k] += work;
+        if (m->mapping == MPM_RETURN_STAGED) b->user[0][k] = a->staged[a->yielding[y]];
         if (m->heat_fraction > 0)
             b->temperature[k] += m->heat_fraction * work / (b->density[k] * m->specific_heat);
     }
@@ -1995,6 +2013,8 @@ MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *bl
     if (block->count < 0) return mpm_fail(block->fault, MPM_ERR_ARGUMENT, "count", (mpm_real)block->count, -1);
     if (!(block->dt > 0)) return mpm_fail(block->fault, MPM_ERR_ARGUMENT, "dt", block->dt, -1);
     MPM__PTW_REQUIRE(mpm__ptw_marked(m, block->fault));
+    if (m->mapping == MPM_RETURN_STAGED && !block->user[0])
+        return mpm_fail(block->fault, MPM_ERR_ARGUMENT, "user_fields (a staged return needs one)", 0, -1);
     h = mpm__ptw_share(m);
     bounds = mpm__ptw_bound(m, &h);
     for (a.first = 0; a.first < block->count; a.first += MPM__PTW_LANES) {

@@ -192,6 +192,7 @@ static inline mpm_desc impact_grid(const impact_case *c)
     }
     d.cells[2] = above + below;
     d.origin[2] = (mpm_real)(shift - below * c->cell);
+    d.user_fields = !strcmp(c->plasticity, "staged"); /* its flow stress */
     d.contact.friction = (mpm_real)c->friction;
     d.contact.touch = c->touch;
     d.contact.normal = (mpm_normal_rule)word_place(MPM_NAMES(MPM_NORMAL_LIST), c->normal);

@@ -16,6 +16,7 @@ enum { MOST = 200 };
 typedef struct points {
     mpm_real strain[6][MOST], spin[3][MOST], density[MOST], stress[6][MOST], energy[MOST];
     mpm_real temperature[MOST], plastic_strain[MOST], plastic_rate[MOST], plastic_work[MOST];
+    mpm_real kept[MOST]; /* the user field */
 } points;
 
 static mpm_material preset(const char *name, const char *model, mpm_units units)
@@ -47,6 +48,7 @@ static mpm_status update(points *p, const mpm_material *m, int first, int count,
 {
     mpm_block b;
     int j;
+    memset(&b, 0, sizeof b);
     b.count = count;
     b.dt = (mpm_real)dt;
     b.cell = 1;
@@ -61,6 +63,7 @@ static mpm_status update(points *p, const mpm_material *m, int first, int count,
     b.plastic_strain = p->plastic_strain + first;
     b.plastic_rate = p->plastic_rate + first;
     b.plastic_work = p->plastic_work + first;
+    b.user[0] = p->kept + first;
     b.tally = counted;
     b.fault = fault;
     return mpm_material_stress(m, &b);
@@ -305,20 +308,114 @@ static void test_staged(void)
     if (sizeof(mpm_real) == 8) {
         CHECK_NEAR("consistent: first order, 125 to 250 steps", consistent[0] / consistent[1], 2, 0.2);
         CHECK_NEAR("consistent: first order, 250 to 500 steps", consistent[1] / consistent[2], 2, 0.2);
-        CHECK_TRUE("staged: the error at least halves with the step",
-                   fabs(staged[1]) < 0.55 * fabs(staged[0]) && fabs(staged[2]) < 0.55 * fabs(staged[1]));
     }
-    CHECK_NEAR("both agree to 0.1 % at 500 steps", (staged[2] - consistent[2]) / exact, 0, 1e-3);
-    /* Further refinement harms the staged return: its flow stress follows d/dt of single steps. */
+    for (i = 0; i < 3; i++) CHECK_NEAR("both agree to 0.1 %", (staged[i] - consistent[i]) / exact, 0, 1e-3);
     (void)shear_test(MPM_RETURN_STAGED, 16000, &p);
-    CHECK_TRUE("staged: at 16000 steps a tenth of the plastic strain is lost",
-               (double)p.plastic_strain[0] < 0.9 * flowed);
+    CHECK_TRUE("staged: at 16000 steps it goes by leaps, and plastic strain is lost",
+               (double)p.plastic_strain[0] < 0.97 * flowed && (double)p.plastic_strain[0] > 0.5 * flowed);
     m.mapping = MPM_RETURN_STAGED;
     reset(&p, &m);
     strain(&p, 0, 0, 0, 0, 0, 0.01, 0);
     CHECK_EQUAL("staged, one large step", update(&p, &m, 0, 1, 1e-12, NULL), MPM_OK);
     CHECK_TRUE("the factor is capped at 1",
                mises(&p, 0) <= sqrt(3.0) * 2 * (double)m.shear_modulus * 0.01 * (1 + 16 * EPS));
+}
+
+/* One point in shear, by A6 - A8 as they are printed. */
+typedef struct stages {
+    mpm_material_state at;
+    double shear, kept, work; /* stress, flow stress of the last return, plastic work */
+} stages;
+
+static void stage(stages *s, const mpm_material *m, double de, double dt)
+{
+    double mu = (double)mpm_material_shear_modulus(m, &s->at), old = s->shear, trial = old + 2 * mu * de;
+    double mises = sqrt(3.0) * fabs(trial), y, d;
+    mpm_flow f;
+    if (!(s->at.plastic_rate > 0)) s->at.plastic_rate = (mpm_real)(2 / sqrt(3.0) * fabs(de) / dt);
+    f = mpm_material_flow(m, &s->at);
+    y = s->kept > 0 ? s->kept : (double)f.stress;
+    s->shear = trial;
+    s->at.plastic_rate = 0;
+    if (mises <= y) return;
+    d = (mises - y) / (3 * mu + (double)f.strain_slope);
+    s->at.plastic_strain += (mpm_real)d;
+    s->at.plastic_rate = (mpm_real)(d / dt);
+    s->kept = (double)mpm_material_flow_stress(m, &s->at);
+    s->shear *= fmin(s->kept / mises, 1);
+    d = (old + s->shear) * (trial - s->shear) / (2 * mu);
+    s->work += d;
+    s->at.temperature += (mpm_real)((double)m->heat_fraction * d / ((double)m->density * (double)m->specific_heat));
+}
+
+/* Strain at rates between 1e5 and 1e7 /s, each kept for some steps, forth and back, never twice to the same stress. */
+static double uneven(int k)
+{
+    return (k / 60 % 2 ? -1 : 1) * 1e-5 * pow(10, 2 * (k / 7 % 5) / 4.0) * (k % 11 == 10 ? -0.37 : 1);
+}
+
+static void test_staged_path(void)
+{
+    mpm_material m = preset("al", "ptw", mpm_units_si());
+    const double close = sizeof(mpm_real) == 8 ? 1e-9 : 0.02; /* an error in d grows through its logarithm */
+    points p;
+    stages s;
+    int k;
+    memset(&s, 0, sizeof s);
+    m.mapping = MPM_RETURN_STAGED;
+    reset(&p, &m);
+    s.at.density = m.density;
+    s.at.temperature = m.temperature;
+    for (k = 0; k < 100; k++) {
+        strain(&p, 0, 0, 0, 0, 0, 0, uneven(k));
+        CHECK_EQUAL("staged path, status", update(&p, &m, 0, 1, 1e-10, NULL), MPM_OK);
+        stage(&s, &m, uneven(k), 1e-10);
+    }
+    CHECK_TRUE("staged path: much flow", s.at.plastic_strain > 0.003);
+    CHECK_RELATIVE("staged path: plastic strain as A6 prints it", p.plastic_strain[0], s.at.plastic_strain, close);
+    CHECK_RELATIVE("... shear stress", p.stress[5][0], s.shear, close);
+    CHECK_RELATIVE("... plastic work", p.plastic_work[0], s.work, close);
+    CHECK_RELATIVE("... temperature", p.temperature[0], s.at.temperature, close);
+    CHECK_RELATIVE("... the flow stress kept", p.kept[0], s.kept, close);
+}
+
+/* Plastic work and elastic energy add up to what the strain put in, by random strains of all directions. */
+static void test_staged_energy(void)
+{
+    mpm_material m = preset("al", "ptw", mpm_units_si());
+    double elastic, given, mu;
+    points p;
+    unsigned long seed = 5;
+    mpm_material_state cold = {0, 0, 298, 2700, 0};
+    int k, j;
+    m.mapping = MPM_RETURN_STAGED;
+    m.heat_fraction = 0; /* one shear modulus */
+    mu = (double)mpm_material_shear_modulus(&m, &cold);
+    reset(&p, &m);
+    for (k = 0; k < 400; k++) {
+        double e[6];
+        for (j = 0; j < 6; j++) e[j] = 2e-3 * random_number(&seed) * (k % 5 == 0 ? 1 : 0.1);
+        strain(&p, 0, e[0], e[1], -e[0] - e[1], e[3], e[4], e[5]);
+        CHECK_EQUAL("staged energy, status", update(&p, &m, 0, 1, 1e-10, NULL), MPM_OK);
+    }
+    elastic = mises(&p, 0) * mises(&p, 0) / (6 * mu);
+    given = 2700 * (double)p.energy[0];
+    CHECK_TRUE("much of it plastic", (double)p.plastic_work[0] > 10 * elastic && p.plastic_strain[0] > 0);
+    CHECK_RELATIVE("staged: plastic + elastic = given", (double)p.plastic_work[0] + elastic, given, 1e4 * EPS);
+}
+
+/* A staged return needs its field. */
+static void test_staged_field(void)
+{
+    mpm_material m = preset("al", "ptw", mpm_units_si());
+    mpm_block b;
+    mpm_fault fault;
+    m.mapping = MPM_RETURN_STAGED;
+    memset(&b, 0, sizeof b);
+    b.dt = 1;
+    b.fault = &fault;
+    CHECK_EQUAL("staged without a user field", mpm_material_stress(&m, &b), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... says so", !strncmp(fault.field, "user_fields", 11));
 }
 
 /* ---- energy and heat -------------------------------------------------------------------------- */
@@ -878,6 +975,9 @@ int main(void)
     test_consistent_return();
     test_block_is_point();
     test_staged();
+    test_staged_path();
+    test_staged_energy();
+    test_staged_field();
     test_heat();
     test_melting();
     test_isentrope();

@@ -38,6 +38,23 @@ static const char *coarse(const char *name, const char *options)
     return path[turn];
 }
 
+/* The staged return books what it takes from the motion, as the consistent one does. */
+static void staged(void)
+{
+    const char *keys[] = {"energy_kinetic_fraction", "energy_plastic_fraction", "energy_elastic_fraction",
+                          "energy_absorbed_fraction", "energy_contact_fraction"};
+    const char *other = "--time 30 --geometry axisymmetric --bond none --out build/tests/consistent";
+    const char *one = "build/tests/staged/summary.json", *two = "build/tests/consistent/summary.json";
+    int i;
+    CHECK_EQUAL("staged", run("--time 30 --geometry axisymmetric --bond none --plasticity staged "
+                              "--out build/tests/staged"), 0);
+    CHECK_EQUAL("consistent", run(other), 0);
+    for (i = 0; i < 5; i++)
+        CHECK_NEAR(keys[i], number_in(one, keys[i]), number_in(two, keys[i]), 0.01);
+    CHECK_NEAR("staged: energy unaccounted", number_in(one, "energy_unaccounted"), 0, 0.01);
+    CHECK_RELATIVE("staged: plastic strain", number_in(one, "eps_mean"), number_in(two, "eps_mean"), 0.1);
+}
+
 /* At 30 degrees from the normal: one mirror plane, momentum conserved along x too. */
 static void oblique(void)
 {
@@ -161,6 +178,7 @@ int main(void)
                1e-12);
     CHECK_NEAR("energy unaccounted", number_in(q, "energy_unaccounted"), 0, 0.03);
     frames();
+    staged();
     oblique();
     metals();
     scene();

@@ -14,9 +14,10 @@
      global state.
 
    NOTHING HALF-WRITTEN
-     Every file is written as <path>.part, flushed, closed, and only then renamed to <path>. When
-     any of this fails the .part file is removed, a file of that name from before is untouched, and
-     the routine returns MPM_ERR_FILE.
+     Every file is written under a name of its own beside <path>, <path>.<8 digits>.part, which must
+     be new: no link is followed, nothing is waited for. It is flushed, brought to the disk (where the
+     system can), closed, and only then renamed to <path>. When any of this fails the .part file is
+     removed, a file of that name from before is untouched, and the routine returns MPM_ERR_FILE.
 
    A COMPLETE PROGRAM
        #define MPM_IMPLEMENTATION
@@ -58,8 +59,7 @@
 
    CONFIGURATION (define before including)
      MPM_FLOAT               GLOBAL  as in mpm.h; public symbols then end in _f32.
-     MPM_IO_PATH             GLOBAL  longest path in bytes, with its ending (default 1024).
-     MPM_MALLOC(n), MPM_FREE(p) IMPL work memory of mpm_io_png.
+     MPM_MALLOC(n), MPM_FREE(p) IMPL names of files being written, lines of a .pvd, work memory of mpm_io_png.
 
    CONVENTIONS
      Text is UTF-8. Numbers in text files carry a decimal point under every locale and as many
@@ -121,10 +121,6 @@
 #define mpm_io_body_numbers mpm_io_body_numbers_f32
 #endif
 
-#ifndef MPM_IO_PATH
-#define MPM_IO_PATH 1024
-#endif
-
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -148,7 +144,7 @@ MPM_API void mpm_io_decimal_point(char *text);
 
 /* Where a run stands. Counts are of this run: after a restart set first_step. */
 typedef struct mpm_io_progress {
-    long step, first_step, steps; /* steps done, done before this run, and planned in all */
+    int64_t step, first_step, steps; /* steps done, done before this run, and planned in all */
     double time;                  /* model time, printed as given ... */
     const char *time_unit;        /* ... with this unit; NULL leaves it out */
     double points;                /* points moved in one step */
@@ -164,17 +160,18 @@ MPM_API size_t mpm_io_progress_text(char *buffer, size_t n, const mpm_io_progres
 
 /* Makes the folder `path` and every missing folder above it. One that exists is fine.
    Returns MPM_ERR_FILE when it cannot be made (or a file is in its place), MPM_ERR_ARGUMENT for an
-   empty or too long path. `fault` may be NULL here and below. Test: 40_io "folders". */
+   empty path, MPM_ERR_MEMORY. On Windows "\\" parts folders too, and "C:" is a drive; elsewhere both are
+   letters like others. `fault` may be NULL here and below. Test: 40_io "folders". */
 MPM_API mpm_status mpm_io_make_directory(const char *path, mpm_fault *fault);
 
 /* A file being written: what all formats below are made of, and yours. */
 typedef struct mpm_io_file {
-    FILE *stream;           /* of <path>.part; NULL if it could not be opened */
-    char path[MPM_IO_PATH]; /* the final name */
+    FILE *stream; /* of the temporary file; NULL if it could not be opened */
+    char *path;   /* the final name; behind its zero the temporary one. Freed by close and drop */
 } mpm_io_file;
 
-/* Begins a file. MPM_ERR_FILE: it cannot be made; MPM_ERR_ARGUMENT: no path, or one too long.
-   Test: 40_io "failures", "format". */
+/* Begins a file: it must be closed or dropped. MPM_ERR_FILE: it cannot be made; MPM_ERR_ARGUMENT: no path;
+   MPM_ERR_MEMORY. Test: 40_io "failures", "format". */
 MPM_API mpm_status mpm_io_open(mpm_io_file *f, const char *path, mpm_fault *fault);
 /* Adds text, bytes, a number of double precision, an mpm_real or a whole number to it, numbers with
    the fewest digits that bring them back; nothing happens if the file is not open. No checking is
@@ -331,7 +328,7 @@ MPM_API size_t mpm_io_line_number(char *buffer, size_t n, size_t used, const cha
 /* ---- PNG ----------------------------------------------------------------------------------- */
 
 /* Writes pixels as PNG: 3 width height bytes, red green blue, row by row from the top; `note` (or NULL) is
-   kept in it as its description. MPM_ERR_ARGUMENT for sizes out of range (1 .. 16384 each), MPM_ERR_FILE,
+   kept in it as its description (iTXt, UTF-8). MPM_ERR_ARGUMENT for sizes out of range (1 .. 16384 each), MPM_ERR_FILE,
    MPM_ERR_MEMORY. Test: 40_io "png". */
 MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int width, int height,
                               const char *note, mpm_fault *fault);
@@ -345,25 +342,64 @@ MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int
 #if defined(MPM_IMPLEMENTATION) && !defined(MPM__IO_IMPLEMENTED)
 #define MPM__IO_IMPLEMENTED
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
-/* C99 cannot make a folder: these are the only lines that know the system. */
+/* C99 can neither make a folder, nor open a file only if it is new, nor wait for the disk: these are the only
+   lines that know the system. */
 #if defined(_WIN32)
 #include <direct.h>
-#include <errno.h>
-#define MPM__IO_MKDIR(path) (_mkdir(path) == 0 || errno == EEXIST)
+#include <fcntl.h>
+#include <io.h>
+#include <sys/stat.h>
+#define MPM__IO_PARTS "/\\" /* what parts folders */
+static inline int mpm__io_mkdir(const char *path)
+{
+    const size_t n = strlen(path);
+    struct stat found;
+    if (path[n - 1] == ':') return n == 2; /* a drive; elsewhere a colon would name a stream of a file */
+    return _mkdir(path) == 0 || (stat(path, &found) == 0 && (found.st_mode & S_IFDIR));
+}
+
+static inline FILE *mpm__io_create(const char *path)
+{
+    const int file = _open(path, _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY, _S_IREAD | _S_IWRITE);
+    return file < 0 ? NULL : _fdopen(file, "wb");
+}
+
+static inline int mpm__io_reach_disk(const char *path)
+{
+    const int file = _open(path, _O_WRONLY | _O_BINARY), good = file >= 0 && _commit(file) == 0;
+    return file >= 0 && _close(file) == 0 && good;
+}
 #elif defined(__unix__) || defined(__APPLE__)
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/types.h>
+#include <unistd.h>
+#define MPM__IO_PARTS "/"
 static inline int mpm__io_mkdir(const char *path)
 {
     struct stat found;
     return mkdir(path, 0777) == 0 || (stat(path, &found) == 0 && S_ISDIR(found.st_mode));
 }
-#define MPM__IO_MKDIR(path) mpm__io_mkdir(path)
+
+/* x: fails if anything has that name, a link that leads nowhere and a FIFO included. */
+static inline FILE *mpm__io_create(const char *path) { return fopen(path, "wbx"); }
+
+/* EINVAL: the file system has no such thing. */
+static inline int mpm__io_reach_disk(const char *path)
+{
+    const int file = open(path, O_WRONLY), good = file >= 0 && (fsync(file) == 0 || errno == EINVAL);
+    return file >= 0 && close(file) == 0 && good;
+}
 #else
-#define MPM__IO_MKDIR(path) ((void)(path), 0)
+#define MPM__IO_PARTS "/"
+static inline int mpm__io_mkdir(const char *path) { return (void)path, 0; }
+static inline FILE *mpm__io_create(const char *path) { return fopen(path, "wbx"); } /* C11 */
+static inline int mpm__io_reach_disk(const char *path) { return (void)path, 1; }
 #endif
 
 #ifdef __cplusplus
@@ -446,34 +482,42 @@ MPM_API size_t mpm_io_fault_text(char *buffer, size_t n, const mpm_fault *fault)
     return used;
 }
 
-/* Seconds as m:ss or h:mm:ss. */
+/* Seconds as m:ss or h:mm:ss, from 0 to 1e8. */
 static inline void mpm__io_clock(char *buffer, size_t n, double seconds)
 {
-    long s = seconds < 1e8 ? (long)(seconds + 0.5) : 100000000L;
+    const long s = !(seconds > 0) ? 0 : seconds < 1e8 ? (long)(seconds + 0.5) : 100000000L;
     if (s < 3600) snprintf(buffer, n, "%ld:%02ld", s / 60, s % 60);
     else snprintf(buffer, n, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
+}
+
+/* How much of the steps is done, %: 0 .. 100 whatever the counts. */
+static inline int mpm__io_percent(const mpm_io_progress *p)
+{
+    const double part = p->steps > 0 ? 100.0 * (double)p->step / (double)p->steps : 0;
+    return part > 100 ? 100 : part > 0 ? (int)part : 0;
 }
 
 MPM_API size_t mpm_io_progress_text(char *buffer, size_t n, const mpm_io_progress *p)
 {
     char text[96], number[40];
-    double done = (double)(p->step - p->first_step);
+    double done = (double)p->step - (double)p->first_step;
     size_t used;
-    snprintf(text, sizeof text, "step %ld/%ld  %ld %%", p->step, p->steps,
-             p->steps > 0 ? (long)(100.0 * (double)p->step / (double)p->steps) : 0L);
+    snprintf(text, sizeof text, "step %lld/%lld  %d %%", (long long)p->step, (long long)p->steps, mpm__io_percent(p));
     used = mpm_append(buffer, n, 0, text);
     if (p->time_unit) {
         mpm__io_short(number, sizeof number, p->time, 4);
-        snprintf(text, sizeof text, "  t = %.24s %.24s", number, p->time_unit);
-        used = mpm_append(buffer, n, used, text);
+        used = mpm_append(buffer, n, used, "  t = ");
+        used = mpm_append(buffer, n, used, number);
+        used = mpm_append(buffer, n, used, " ");
+        used = mpm_append(buffer, n, used, p->time_unit);
     }
     if (done > 0 && p->elapsed > 0) {
         mpm__io_short(number, sizeof number, p->points * done / p->elapsed, 2);
-        snprintf(text, sizeof text, "  %.32s points/s", number);
-        used = mpm_append(buffer, n, used, text);
-        mpm__io_clock(number, sizeof number, p->elapsed * (double)(p->steps - p->step) / done);
-        snprintf(text, sizeof text, "  left %.32s", number);
-        used = mpm_append(buffer, n, used, text);
+        used = mpm_append(buffer, n, used, "  ");
+        used = mpm_append(buffer, n, used, number);
+        used = mpm_append(buffer, n, used, " points/s  left ");
+        mpm__io_clock(number, sizeof number, p->elapsed * ((double)p->steps - (double)p->step) / done);
+        used = mpm_append(buffer, n, used, number);
     }
     return used;
 }
@@ -482,71 +526,99 @@ MPM_API size_t mpm_io_progress_text(char *buffer, size_t n, const mpm_io_progres
 
 MPM_API mpm_status mpm_io_make_directory(const char *path, mpm_fault *fault)
 {
-    char part[MPM_IO_PATH];
-    size_t i, length = path ? strlen(path) : 0;
-    if (length == 0 || length >= sizeof part)
-        return mpm_fail(fault, MPM_ERR_ARGUMENT, "length of folder path", (mpm_real)length, -1);
-    for (i = 1; i <= length; i++) {
-        if (path[i] != 0 && path[i] != '/' && path[i] != '\\') continue;
+    const size_t length = path ? strlen(path) : 0;
+    char *part;
+    size_t i;
+    int good = 1;
+    if (length == 0) return mpm_fail(fault, MPM_ERR_ARGUMENT, "length of folder path", 0, -1);
+    part = (char *)MPM_MALLOC(length + 1);
+    if (!part) return mpm_fail(fault, MPM_ERR_MEMORY, "bytes for folder path", (mpm_real)length, -1);
+    for (i = 1; i <= length && good; i++) {
+        if (path[i] != 0 && !strchr(MPM__IO_PARTS, path[i])) continue;
         memcpy(part, path, i);
         part[i] = 0;
-        if (part[i - 1] == ':') continue; /* a drive, "C:" */
-        if (!MPM__IO_MKDIR(part)) return mpm_fail(fault, MPM_ERR_FILE, "folder path", 0, -1);
+        good = mpm__io_mkdir(part);
     }
-    return MPM_OK;
+    MPM_FREE(part);
+    return good ? MPM_OK : mpm_fail(fault, MPM_ERR_FILE, "folder path", 0, -1);
 }
 
+#define MPM__IO_PART 15 /* bytes of ".01234567.part" */
+
 /* The name a file has until it is complete. */
-static inline void mpm__io_part_name(char part[MPM_IO_PATH + 8], const char *path)
+static inline char *mpm__io_part(const mpm_io_file *f) { return f->path + strlen(f->path) + 1; }
+
+/* Opens a new file beside the final one. Each try has another name, in which time and address keep apart those
+   who write the same file at once. */
+static inline FILE *mpm__io_open_part(const mpm_io_file *f)
 {
-    size_t used = mpm_append(part, MPM_IO_PATH + 8, 0, path);
-    mpm_append(part, MPM_IO_PATH + 8, used, ".part");
+    uint64_t mix = (uint64_t)time(NULL) ^ (uint64_t)clock() << 20 ^ (uint64_t)(uintptr_t)f->path;
+    char *part = mpm__io_part(f);
+    const size_t at = mpm_append(part, strlen(f->path) + 1, 0, f->path);
+    FILE *stream = NULL;
+    int tries;
+    for (tries = 0; tries < 100 && !stream; tries++) {
+        mix = mix * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+        snprintf(part + at, MPM__IO_PART, ".%08lx.part", (unsigned long)(mix >> 32));
+        stream = mpm__io_create(part);
+        if (!stream && errno != EEXIST) break;
+    }
+    return stream;
+}
+
+/* Gives name and stream up. */
+static inline void mpm__io_forget(mpm_io_file *f)
+{
+    MPM_FREE(f->path);
+    f->stream = NULL;
+    f->path = NULL;
 }
 
 MPM_API mpm_status mpm_io_open(mpm_io_file *f, const char *path, mpm_fault *fault)
 {
-    char part[MPM_IO_PATH + 8];
-    size_t length = path ? strlen(path) : 0;
+    const size_t length = path ? strlen(path) : 0, bytes = 2 * length + 1 + MPM__IO_PART;
     f->stream = NULL;
-    f->path[0] = 0;
-    if (length == 0 || length >= MPM_IO_PATH)
-        return mpm_fail(fault, MPM_ERR_ARGUMENT, "length of path", (mpm_real)length, -1);
+    f->path = NULL;
+    if (length == 0) return mpm_fail(fault, MPM_ERR_ARGUMENT, "length of path", 0, -1);
+    f->path = (char *)MPM_MALLOC(bytes);
+    if (!f->path) return mpm_fail(fault, MPM_ERR_MEMORY, "bytes for path", (mpm_real)bytes, -1);
     memcpy(f->path, path, length + 1);
-    mpm__io_part_name(part, path);
-    f->stream = fopen(part, "wb");
-    return f->stream ? MPM_OK : mpm_fail(fault, MPM_ERR_FILE, "path: cannot be made", 0, -1);
+    f->stream = mpm__io_open_part(f);
+    if (f->stream) return MPM_OK;
+    mpm__io_forget(f);
+    return mpm_fail(fault, MPM_ERR_FILE, "path: cannot be made", 0, -1);
 }
 
 MPM_API mpm_status mpm_io_close(mpm_io_file *f, mpm_fault *fault)
 {
-    char part[MPM_IO_PATH + 8];
-    int good;
+    const char *part;
+    int good, named;
     if (!f->stream) return mpm_fail(fault, MPM_ERR_FILE, "path: not open", 0, -1);
-    mpm__io_part_name(part, f->path);
+    part = mpm__io_part(f);
     good = fflush(f->stream) == 0 && !ferror(f->stream);
     good = fclose(f->stream) == 0 && good;
-    f->stream = NULL;
+    good = good && mpm__io_reach_disk(part);
 #ifdef _WIN32
     if (good) remove(f->path); /* rename does not replace there */
 #endif
-    if (good && rename(part, f->path) == 0) return MPM_OK;
-    remove(part);
+    named = good && rename(part, f->path) == 0;
+    if (!named) remove(part);
+    mpm__io_forget(f);
+    if (named) return MPM_OK;
     return mpm_fail(fault, MPM_ERR_FILE, good ? "path: cannot be renamed" : "path: writing failed", 0, -1);
 }
 
 MPM_API void mpm_io_drop(mpm_io_file *f)
 {
-    char part[MPM_IO_PATH + 8];
     if (!f->stream) return;
-    mpm__io_part_name(part, f->path);
     fclose(f->stream);
-    f->stream = NULL;
-    remove(part);
+    remove(mpm__io_part(f));
+    mpm__io_forget(f);
 }
 
 MPM_API void mpm_io_put(mpm_io_file *f, const char *text)
 {
-    if (f->stream) fputs(text, f->stream);
+    if (f->stream && text) fputs(text, f->stream);
 }
 
 MPM_API void mpm_io_put_bytes(mpm_io_file *f, const void *data, size_t n)
@@ -575,25 +647,53 @@ MPM_API void mpm_io_put_integer(mpm_io_file *f, long long value)
     mpm_io_put(f, text);
 }
 
+/* ---- characters ---------------------------------------------------------------------------- */
+
+/* The bytes of the UTF-8 character at p, 1 .. 4 (RFC 3629: no longer than need be, no surrogates); 0 if there is
+   none. */
+static inline size_t mpm__io_utf8(const char *p)
+{
+    const unsigned char *c = (const unsigned char *)p;
+    const size_t n = c[0] < 0x80 ? 1 : c[0] < 0xc2 ? 0 : c[0] < 0xe0 ? 2 : c[0] < 0xf0 ? 3 : c[0] < 0xf5 ? 4 : 0;
+    size_t i;
+    for (i = 1; i < n; i++)
+        if ((c[i] & 0xc0) != 0x80) return 0;
+    if ((c[0] == 0xe0 && c[1] < 0xa0) || (c[0] == 0xed && c[1] > 0x9f)) return 0;
+    if ((c[0] == 0xf0 && c[1] < 0x90) || (c[0] == 0xf4 && c[1] > 0x8f)) return 0;
+    return n;
+}
+
+#define MPM__IO_UNKNOWN "\xef\xbf\xbd" /* U+FFFD stands for what is no character */
+
+/* The next character of a text, *n bytes; moves the text past it. */
+static inline const char *mpm__io_character(const char **text, size_t *n)
+{
+    const char *c = *text;
+    *n = mpm__io_utf8(c);
+    *text += *n ? *n : 1;
+    if (*n) return c;
+    *n = 3;
+    return MPM__IO_UNKNOWN;
+}
+
 /* ---- JSON ---------------------------------------------------------------------------------- */
 
 /* A JSON string: quotes, backslashes and control characters escaped. */
 static inline void mpm__io_json_quoted(mpm_io_json *j, const char *text)
 {
     char escape[8];
-    FILE *out = j->file.stream;
-    if (!out) return;
-    fputc('"', out);
-    for (; *text; text++) {
-        unsigned char ch = (unsigned char)*text;
-        if (ch == '"' || ch == '\\') fputc('\\', out);
-        if (ch >= 32) fputc(ch, out);
+    size_t n;
+    mpm_io_put(&j->file, "\"");
+    while (*text) {
+        const char *c = mpm__io_character(&text, &n);
+        if (*c == '"' || *c == '\\') mpm_io_put(&j->file, "\\");
+        if (n > 1 || (unsigned char)*c >= 32) mpm_io_put_bytes(&j->file, c, n);
         else {
-            snprintf(escape, sizeof escape, "\\u%04x", (unsigned)ch);
-            fputs(escape, out);
+            snprintf(escape, sizeof escape, "\\u%04x", (unsigned)*c);
+            mpm_io_put(&j->file, escape);
         }
     }
-    fputc('"', out);
+    mpm_io_put(&j->file, "\"");
 }
 
 /* Comma, new line, indentation and the key of the next pair. */
@@ -687,12 +787,14 @@ MPM_API mpm_status mpm_io_csv_begin(mpm_io_csv *t, const char *path, const char 
     const char *p;
     t->columns = 1;
     t->cells = 0;
+    t->file.stream = NULL;
+    if (!columns) return t->status = mpm_fail(fault, MPM_ERR_ARGUMENT, "columns", 0, -1);
     t->status = mpm_io_open(&t->file, path, fault);
     if (t->status < 0) return t->status;
     for (p = columns; *p; p++) t->columns += *p == ',';
     if (note) {
         mpm_io_put(&t->file, "# mpm.h " MPM_VERSION ": ");
-        for (p = note; *p; p++) fputc(*p == '\n' || *p == '\r' ? ' ' : *p, t->file.stream);
+        for (p = note; *p; p++) fputc(strchr("\n\r", *p) ? ' ' : *p, t->file.stream);
         mpm_io_put(&t->file, "\n");
     }
     mpm_io_put(&t->file, columns);
@@ -721,9 +823,9 @@ MPM_API void mpm_io_csv_integer(mpm_io_csv *t, long long value)
 
 MPM_API void mpm_io_csv_text(mpm_io_csv *t, const char *value)
 {
-    int quote = strpbrk(value, ",\"\r\n") != NULL;
+    int quote = value && strpbrk(value, ",\"\r\n") != NULL;
     if (quote) mpm_io_put(&t->file, "\"");
-    for (; *value && t->file.stream; value++) {
+    for (; value && *value && t->file.stream; value++) {
         if (*value == '"') fputc('"', t->file.stream);
         fputc(*value, t->file.stream);
     }
@@ -813,20 +915,44 @@ MPM_API mpm_io_vtu_desc mpm_io_vtu_desc_default(void)
     return d;
 }
 
+/* Whether XML has the character: no control character but tab and ends of line, not U+FFFE and U+FFFF. */
+static inline int mpm__io_xml_has(const char *c, size_t n)
+{
+    if (n == 3 && (memcmp(c, "\xef\xbf\xbe", 3) == 0 || memcmp(c, "\xef\xbf\xbf", 3) == 0)) return 0;
+    return n > 1 || (unsigned char)*c >= 32 || strchr("\t\n\r", *c) != NULL;
+}
+
 /* XML text: the five reserved characters escaped, "--" broken up so that a comment stays one. */
 static inline void mpm__io_put_xml(mpm_io_file *f, const char *text)
 {
-    for (; *text && f->stream; text++) {
-        switch (*text) {
+    size_t n;
+    while (*text) {
+        const char *c = mpm__io_character(&text, &n);
+        switch (*c) {
         case '&': mpm_io_put(f, "&amp;"); break;
         case '<': mpm_io_put(f, "&lt;"); break;
         case '>': mpm_io_put(f, "&gt;"); break;
         case '"': mpm_io_put(f, "&quot;"); break;
         case '\'': mpm_io_put(f, "&apos;"); break;
-        case '-': mpm_io_put(f, text[1] == '-' ? "- " : "-"); break;
-        default: fputc(*text, f->stream);
+        case '-': mpm_io_put(f, *text == '-' ? "- " : "-"); break;
+        default:
+            if (mpm__io_xml_has(c, n)) mpm_io_put_bytes(f, c, n);
+            else mpm_io_put(f, MPM__IO_UNKNOWN);
         }
     }
+}
+
+/* Whether a name can stand in a series as it is. */
+static inline int mpm__io_frame_name(const char *name)
+{
+    size_t n;
+    if (!name || !*name) return 0;
+    for (; *name; name += n) {
+        n = mpm__io_utf8(name);
+        if (n == 0 || !mpm__io_xml_has(name, n)) return 0;
+        if (n == 1 && ((unsigned char)*name < 32 || strchr("<>&\"'", *name))) return 0;
+    }
+    return 1;
 }
 
 /* One real of a field, converted and scaled, as the bytes of the file. */
@@ -1007,53 +1133,87 @@ MPM_API mpm_status mpm_io_pvd_begin(const char *path, mpm_fault *fault)
     return mpm_io_close(&f, fault);
 }
 
+/* Reads a line of any length, its end included, into *line[*room], which grows. Returns its length; 0 at the end of
+   the file and without memory. */
+static inline size_t mpm__io_read_line(FILE *from, char **line, size_t *room)
+{
+    size_t n = 0;
+    int c = 0;
+    while (c != '\n' && (c = fgetc(from)) != EOF) {
+        if (n + 2 > *room) {
+            const size_t more = 2 * *room + 256;
+            char *wider = (char *)MPM_MALLOC(more);
+            if (!wider) return 0;
+            if (n > 0) memcpy(wider, *line, n);
+            MPM_FREE(*line);
+            *line = wider;
+            *room = more;
+        }
+        (*line)[n++] = (char)c;
+    }
+    if (n > 0) (*line)[n] = 0;
+    return n;
+}
+
+/* Whether a line is the entry of this frame. */
+static inline int mpm__io_pvd_names(const char *line, const char *frame)
+{
+    const char *at = strstr(line, "file=\"");
+    const size_t n = strlen(frame);
+    return at && strncmp(at + 6, frame, n) == 0 && strcmp(at + 6 + n, "\"/>\n") == 0;
+}
+
 /* Copies the frames of an earlier file, all but the one of the same name. Each is one line that
    ends in file="name"/>; returns 0 when the file is not of that make. */
-static inline int mpm__io_pvd_copy(mpm_io_file *to, FILE *from, const char *ending)
+static inline int mpm__io_pvd_copy(mpm_io_file *to, FILE *from, const char *frame)
 {
-    char line[2 * MPM_IO_PATH + 128];
-    int in_collection = 0;
-    while (fgets(line, (int)sizeof line, from)) {
-        size_t length = strlen(line), tail = strlen(ending);
-        if (strstr(line, "</Collection>")) return in_collection;
-        if (in_collection && line[length - 1] != '\n') return 0;
-        if (in_collection && (length < tail || strcmp(line + length - tail, ending) != 0))
-            mpm_io_put(to, line);
+    char *line = NULL;
+    size_t room = 0, n;
+    int in_collection = 0, good = 0;
+    while ((n = mpm__io_read_line(from, &line, &room)) > 0) {
+        if (strlen(line) != n || line[n - 1] != '\n') break; /* a zero inside, or cut short */
+        good = in_collection && strstr(line, "</Collection>") != NULL;
+        if (good) break;
+        if (in_collection && !mpm__io_pvd_names(line, frame)) mpm_io_put(to, line);
         if (strstr(line, "<Collection>")) in_collection = 1;
     }
-    return 0;
+    MPM_FREE(line);
+    return good && !ferror(from);
+}
+
+/* The frames of the series there is. Only one that does not exist is new: what cannot be read must not be lost. */
+static inline mpm_status mpm__io_pvd_take(mpm_io_file *to, const char *path, const char *frame, mpm_fault *fault)
+{
+    FILE *old;
+    int good;
+    errno = 0;
+    old = fopen(path, "rb");
+    if (!old && errno == ENOENT) return MPM_OK;
+    if (!old) return mpm_fail(fault, MPM_ERR_FILE, "path: cannot be read", 0, -1);
+    good = mpm__io_pvd_copy(to, old, frame);
+    fclose(old);
+    return good ? MPM_OK : mpm_fail(fault, MPM_ERR_FILE, "path: not a series of ours", 0, -1);
 }
 
 MPM_API mpm_status mpm_io_pvd_add(const char *path, const char *frame, double time,
                                   mpm_fault *fault)
 {
-    char ending[MPM_IO_PATH + 16];
     mpm_io_file f;
-    FILE *old;
-    size_t used;
     mpm_status status;
-    if (!frame || frame[0] == 0 || strlen(frame) >= MPM_IO_PATH || strpbrk(frame, "<>&\"'\n"))
-        return mpm_fail(fault, MPM_ERR_ARGUMENT, "name of frame", 0, -1);
+    if (!mpm__io_frame_name(frame)) return mpm_fail(fault, MPM_ERR_ARGUMENT, "name of frame", 0, -1);
     status = mpm_io_open(&f, path, fault);
     if (status < 0) return status;
-    used = mpm_append(ending, sizeof ending, 0, "file=\"");
-    used = mpm_append(ending, sizeof ending, used, frame);
-    mpm_append(ending, sizeof ending, used, "\"/>\n");
     mpm_io_put(&f, MPM__IO_PVD_HEAD);
-    old = fopen(path, "rb");
-    if (old) {
-        int good = mpm__io_pvd_copy(&f, old, ending);
-        fclose(old);
-        if (!good) {
-            mpm_io_drop(&f);
-            return mpm_fail(fault, MPM_ERR_FILE, "path: not a series of ours", 0, -1);
-        }
+    status = mpm__io_pvd_take(&f, path, frame, fault);
+    if (status < 0) {
+        mpm_io_drop(&f);
+        return status;
     }
     mpm_io_put(&f, "    <DataSet timestep=\"");
     mpm_io_put_number(&f, time);
-    mpm_io_put(&f, "\" part=\"0\" ");
-    mpm_io_put(&f, ending);
-    mpm_io_put(&f, MPM__IO_PVD_TAIL);
+    mpm_io_put(&f, "\" part=\"0\" file=\"");
+    mpm_io_put(&f, frame);
+    mpm_io_put(&f, "\"/>\n" MPM__IO_PVD_TAIL);
     return mpm_io_close(&f, fault);
 }
 
@@ -1788,13 +1948,29 @@ static inline void mpm__io_filter_all(const unsigned char *pixels, int width, in
     }
 }
 
-/* A tEXt chunk: keyword, zero, text of at most 900 bytes. */
+/* An iTXt chunk: keyword, zero, "not compressed" twice, no language, no translation, UTF-8 of any length. */
 static inline void mpm__io_png_text(mpm_io_file *f, const char *keyword, const char *text)
 {
-    char body[1000];
-    size_t key = strlen(keyword) + 1;
-    memcpy(body, keyword, key);
-    mpm__io_png_chunk(f, "tEXt", body, key + mpm_append(body + key, 900, 0, text));
+    unsigned char number[4];
+    const char *at;
+    const size_t key = strlen(keyword);
+    size_t n, length = key + 5;
+    uint32_t crc = mpm__io_crc(mpm__io_crc(mpm__io_crc(0, "iTXt", 4), keyword, key), "\0\0\0\0", 5);
+    for (at = text; *at; length += n) {
+        const char *c = mpm__io_character(&at, &n);
+        crc = mpm__io_crc(crc, c, n);
+    }
+    mpm__io_big_endian(number, (uint32_t)length);
+    mpm_io_put_bytes(f, number, 4);
+    mpm_io_put(f, "iTXt");
+    mpm_io_put(f, keyword);
+    mpm_io_put_bytes(f, "\0\0\0\0", 5);
+    while (*text) {
+        const char *c = mpm__io_character(&text, &n);
+        mpm_io_put_bytes(f, c, n);
+    }
+    mpm__io_big_endian(number, crc);
+    mpm_io_put_bytes(f, number, 4);
 }
 
 /* The chunks of a picture whose filtered rows, width * 3 + 1 bytes each, stand behind z. */

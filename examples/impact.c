@@ -52,7 +52,7 @@ static int write_summary(const impact *s, const impact_case *c, const output *o,
     const impact_result r = impact_measure(s, c);
     const mpm_world *w = &s->world;
     const double start = s->start.kinetic, cpu = o->cpu;
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     mpm_fault fault;
     mpm_io_json j;
     mpm_io_json_begin(&j, file_in(o->folder, "summary.json", path, sizeof path), &fault);

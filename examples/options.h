@@ -86,16 +86,19 @@ static inline void option_drop(option *o, int *n, const char *name)
         for ((*n)--; k < *n; k++) o[k] = o[k + 1];
 }
 
-/* The current value of o as text, into a buffer of n characters. */
-static inline void option_text(const option *o, char *buffer, size_t n)
+#define OPTION_NUMBER 40 /* bytes of a number as text */
+
+/* The current value of o as text, of any length; a number is put into the buffer. */
+static inline const char *option_text(const option *o, char number[OPTION_NUMBER])
 {
     switch (o->type) {
-    case OPTION_REAL: snprintf(buffer, n, "%.15g", *(double *)o->value); break;
-    case OPTION_LONG: snprintf(buffer, n, "%ld", *(long *)o->value); break;
+    case OPTION_REAL: snprintf(number, OPTION_NUMBER, "%.15g", *(double *)o->value); return number;
+    case OPTION_LONG: snprintf(number, OPTION_NUMBER, "%ld", *(long *)o->value); return number;
+    case OPTION_FLAG: return *(int *)o->value ? "on" : "off";
     case OPTION_TEXT:
-    case OPTION_WORD: snprintf(buffer, n, "%s", *(const char **)o->value); break;
-    case OPTION_FLAG: snprintf(buffer, n, "%s", *(int *)o->value ? "on" : "off"); break;
+    case OPTION_WORD: break;
     }
+    return *(const char **)o->value;
 }
 
 static inline void options_help(const char *program, const char *about, const option *o, int n)
@@ -103,11 +106,10 @@ static inline void options_help(const char *program, const char *about, const op
     int i;
     printf("usage: %s [options]\n%s\n\noptions (default in brackets):\n", program, about);
     for (i = 0; i < n; i++) {
-        char text[256];
-        option_text(&o[i], text, sizeof text);
+        char number[OPTION_NUMBER];
         printf("  --%-20s ", o[i].name);
         if (o[i].type == OPTION_WORD) printf("%.*s: ", words_shown(o[i].words), o[i].words);
-        printf("%s [%s]\n", o[i].help, text);
+        printf("%s [%s]\n", o[i].help, option_text(&o[i], number));
     }
     printf("  --%-20s %s\n", "help", "this text");
 }
@@ -165,6 +167,27 @@ static inline int options_parse(int argc, char **argv, const char *about, const 
         }
     }
     return 0;
+}
+
+/* ---- names and the end ------------------------------------------------------------------------ */
+
+#define PATH_BYTES 4096 /* longest path that a system opens */
+
+/* folder/name, or "" where that is too long: all that opens files refuses it, nothing is cut. Returns path. */
+static inline const char *file_in(const char *folder, const char *name, char *path, size_t n)
+{
+    const int length = snprintf(path, n, "%s/%s", folder, name);
+    if (length < 0 || (size_t)length >= n) path[0] = 0;
+    return path;
+}
+
+/* What main returns: the status so far, but 1 after a message if something printed was lost. Test: 74_programs. */
+static inline int program_end(int status)
+{
+    const int lost = fflush(stdout) != 0 || ferror(stdout);
+    if (!lost) return status;
+    fprintf(stderr, "error: standard output cannot be written\n");
+    return status ? status : 1;
 }
 
 #endif

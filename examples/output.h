@@ -54,7 +54,7 @@ static inline int output_check(const output *o, char *message, size_t n)
 /* Makes the folder and begins the series. Returns 1, or 0 after a message, as all that write. */
 static inline int output_begin(output *o)
 {
-    char name[64], path[MPM_IO_PATH];
+    char name[64], path[PATH_BYTES];
     mpm_fault fault;
     o->frame = 0;
     o->cpu = 0;
@@ -139,7 +139,7 @@ static inline void output_heat(output_picture *p, double low, double high)
 static inline int output_png(output *o, const output_picture *p, const char *name)
 {
     const clock_t mark = clock();
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     mpm_draw_canvas c;
     mpm_fault fault;
     int ok = mpm_draw_cuts(&c, p->cut, 2, 2, 800, &fault) >= 0;
@@ -165,7 +165,7 @@ static inline int output_points(const output *o, const mpm_world *w, const mpm_i
     mpm_io_vtu_desc d = mpm_io_vtu_desc_default();
     mpm_io_field field[OUTPUT_FIELDS + OUTPUT_MORE];
     mpm_fault fault;
-    char path[MPM_IO_PATH], note[80];
+    char path[PATH_BYTES], note[80];
     int32_t *body = (int32_t *)malloc((size_t)p->count * sizeof *body);
     int a, ok;
     if (!body) return complain("no memory for output");
@@ -201,7 +201,7 @@ static inline int output_frame(output *o, const mpm_world *w, const mpm_io_field
                                const output_picture *p)
 {
     const clock_t mark = clock();
-    char series[64], name[64], path[MPM_IO_PATH];
+    char series[64], name[64], path[PATH_BYTES];
     mpm_fault fault;
     snprintf(series, sizeof series, "%s.pvd", o->name);
     snprintf(name, sizeof name, "points_%04ld.vtu", o->frame);

@@ -14,44 +14,49 @@ static inline int complain(const char *message)
 /* "what: the fault in words" */
 static inline int report(const mpm_fault *fault, const char *what)
 {
-    char text[256], line[1400];
+    char text[256];
     mpm_io_fault_text(text, sizeof text, fault);
-    snprintf(line, sizeof line, "%s: %s", what, text);
-    return complain(line);
-}
-
-/* folder/name */
-static inline const char *file_in(const char *folder, const char *name, char *path, size_t n)
-{
-    snprintf(path, n, "%s/%s", folder, name);
-    return path;
+    fprintf(stderr, "error: %s: %s\n", *what ? what : "a path that is too long", text);
+    return 0;
 }
 
 /* The options of a run, as the object "options" of its summary. */
 static inline void options_json(mpm_io_json *j, const option *options, int n)
 {
-    char text[256];
+    char number[OPTION_NUMBER];
     int i;
     mpm_io_json_open(j, "options");
     for (i = 0; i < n; i++) {
-        option_text(&options[i], text, sizeof text);
         if (options[i].type == OPTION_REAL) mpm_io_json_number(j, options[i].name, *(double *)options[i].value);
         else if (options[i].type == OPTION_LONG) mpm_io_json_integer(j, options[i].name, *(long *)options[i].value);
-        else mpm_io_json_string(j, options[i].name, text);
+        else mpm_io_json_string(j, options[i].name, option_text(&options[i], number));
     }
     mpm_io_json_close(j);
 }
 
-/* The text of a file, up to room - 1 bytes; "" if there is none. Returns text. */
+/* The text of a file, or "" if there is none. Returns 1; 0, with "" too, if the file is there and cannot be read, is
+   longer than room - 1 bytes or holds a zero. */
+static inline int text_read(const char *path, char *text, size_t room)
+{
+    FILE *f;
+    size_t n;
+    int whole;
+    text[0] = 0;
+    errno = 0;
+    f = fopen(path, "rb");
+    if (!f) return errno == ENOENT;
+    n = fread(text, 1, room - 1, f);
+    text[n] = 0;
+    whole = strlen(text) == n && fgetc(f) == EOF && !ferror(f);
+    fclose(f);
+    if (!whole) text[0] = 0;
+    return whole;
+}
+
+/* The same, where what cannot be read is as good as nothing. Returns text. */
 static inline const char *text_in(const char *path, char *text, size_t room)
 {
-    FILE *f = fopen(path, "rb");
-    size_t n = 0;
-    if (f) {
-        n = fread(text, 1, room - 1, f);
-        fclose(f);
-    }
-    text[n] = 0;
+    text_read(path, text, room);
     return text;
 }
 
@@ -70,17 +75,16 @@ static inline const char *json_value(const char *text, const char *key)
 static inline int options_match(const char *summary, const option *o, const option *plain, int n)
 {
     const char *block = json_value(summary, "options");
-    char text[256], other[256];
+    char mine[OPTION_NUMBER], theirs[OPTION_NUMBER];
     int k;
     if (!block) return 0;
     for (k = 0; k < n; k++) {
         const char *at = json_value(block, o[k].name);
         const int quoted = o[k].type != OPTION_REAL && o[k].type != OPTION_LONG;
-        size_t length;
-        option_text(&o[k], text, sizeof text);
-        length = strlen(text);
-        if (!at) option_text(&plain[k], other, sizeof other);
-        else if (!quoted) snprintf(other, sizeof other, "%.15g", strtod(at, NULL));
+        const char *text = option_text(&o[k], mine), *other = theirs;
+        const size_t length = strlen(text);
+        if (!at) other = option_text(&plain[k], theirs);
+        else if (!quoted) snprintf(theirs, sizeof theirs, "%.15g", strtod(at, NULL));
         else if (*at == '"' && !strncmp(at + 1, text, length) && at[1 + length] == '"') continue;
         else return 0;
         if (strcmp(text, other)) return 0;

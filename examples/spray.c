@@ -279,7 +279,7 @@ static mpm_status write_frame(const char *folder, const mpm_spray *s, spray_colu
                               const char *note, mpm_fault *fault)
 {
     static const mpm_real none[3] = {0, 0, 0};
-    char path[MPM_IO_PATH], name[64];
+    char path[PATH_BYTES], name[64];
     mpm_io_field field[4];
     mpm_io_vtu_desc d = mpm_io_vtu_desc_default();
     int32_t i, n = s->live + s->deposited;
@@ -309,30 +309,30 @@ static mpm_status write_frame(const char *folder, const mpm_spray *s, spray_colu
     d.float32 = 1;
     d.note = note;
     snprintf(name, sizeof name, "spray-%04d.vtu", number_of_frame);
-    snprintf(path, sizeof path, "%s/%s", folder, name);
+    file_in(folder, name, path, sizeof path);
     if ((status = mpm_io_vtu(path, &d, fault)) < 0) return status;
-    snprintf(path, sizeof path, "%s/spray.pvd", folder);
+    file_in(folder, "spray.pvd", path, sizeof path);
     return mpm_io_pvd_add(path, name, d.time, fault);
 }
 
 static mpm_status write_pictures(const char *folder, const mpm_spray *s, spray_columns *c, const char *note,
                                  mpm_fault *fault)
 {
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     mpm_draw_canvas canvas;
     mpm_status status = MPM_OK;
     if (s->live + s->deposited > 0) {
         if ((status = mpm_draw_canvas_init(&canvas, 1500, 640, NULL, 0)) < 0) return status;
         status = spray_draw_plume(&canvas, mpm_draw_tile(&canvas, 1, 1, 0), s, c, (double)s->desc.gas_speed,
                                   "plume, from the side", fault);
-        snprintf(path, sizeof path, "%s/plume.png", folder);
+        file_in(folder, "plume.png", path, sizeof path);
         if (status >= 0) status = mpm_io_png(path, canvas.rgb, canvas.width, canvas.height, note, fault);
         mpm_draw_canvas_free(&canvas);
     }
     if (s->deposited > 0 && status >= 0) {
         if ((status = mpm_draw_canvas_init(&canvas, 1100, 1200, NULL, 0)) < 0) return status;
         status = spray_draw_deposit(&canvas, mpm_draw_tile(&canvas, 1, 1, 0), s, c, 25, "deposit, from above", fault);
-        snprintf(path, sizeof path, "%s/deposit.png", folder);
+        file_in(folder, "deposit.png", path, sizeof path);
         if (status >= 0) status = mpm_io_png(path, canvas.rgb, canvas.width, canvas.height, note, fault);
         mpm_draw_canvas_free(&canvas);
     }
@@ -349,11 +349,10 @@ static const char *spray_text(const option *o, int n)
     size_t used = 0;
     int i, k;
     for (i = 0; i < n; i++) {
-        char value[256];
+        char number[OPTION_NUMBER];
         for (k = 0; k < 6 && strcmp(o[i].name, free[k]); k++) continue;
         if (k < 6) continue;
-        option_text(&o[i], value, sizeof value);
-        used = mpm_io_line(text, sizeof text, used, o[i].name, value);
+        used = mpm_io_line(text, sizeof text, used, o[i].name, option_text(&o[i], number));
     }
     return text;
 }
@@ -420,11 +419,11 @@ static int results(result *r, const mpm_spray *s, double cpu)
 static mpm_status write_summary(const char *folder, const result *r, int count, const option *o, int options,
                                 mpm_fault *fault)
 {
-    char path[MPM_IO_PATH], text[256];
+    char path[PATH_BYTES], number[OPTION_NUMBER];
     mpm_io_json j;
     mpm_status status;
     int k;
-    snprintf(path, sizeof path, "%s/summary.json", folder);
+    file_in(folder, "summary.json", path, sizeof path);
     if ((status = mpm_io_json_begin(&j, path, fault)) < 0) return status;
     for (k = 0; k < count; k++) {
         if (r[k].value == floor(r[k].value) && fabs(r[k].value) < 1e15)
@@ -433,10 +432,7 @@ static mpm_status write_summary(const char *folder, const result *r, int count, 
             mpm_io_json_number(&j, r[k].key, r[k].value);
     }
     mpm_io_json_open(&j, "options");
-    for (k = 0; k < options; k++) {
-        option_text(&o[k], text, sizeof text);
-        mpm_io_json_string(&j, o[k].name, text);
-    }
+    for (k = 0; k < options; k++) mpm_io_json_string(&j, o[k].name, option_text(&o[k], number));
     mpm_io_json_close(&j);
     return mpm_io_json_end(&j, fault);
 }
@@ -494,24 +490,23 @@ static void describe_in_words(const option *o, int n, char *note, size_t room)
     int k;
     note[0] = 0;
     for (k = 0; k < n; k++) {
-        char text[256];
-        int wrote;
-        option_text(&o[k], text, sizeof text);
-        wrote = snprintf(note + at, room - at, "%s--%s %s", k ? " " : "spray ", o[k].name, text);
-        if (wrote < 0 || (size_t)wrote >= room - at) break;
-        at += (size_t)wrote;
+        char number[OPTION_NUMBER];
+        at = mpm_append(note, room, at, k ? " --" : "spray --");
+        at = mpm_append(note, room, at, o[k].name);
+        at = mpm_append(note, room, at, " ");
+        at = mpm_append(note, room, at, option_text(&o[k], number));
     }
 }
 
 static mpm_status write_all(mpm_spray *s, const settings *o, const option *row, int rows, spray_columns *c,
                             const char *note, double cpu, mpm_fault *fault)
 {
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     result r[RESULTS];
     int n = results(r, s, cpu), k;
     mpm_status status = write_summary(o->out, r, n, row, rows, fault);
     if (status >= 0) status = write_pictures(o->out, s, c, note, fault);
-    snprintf(path, sizeof path, "%s/checkpoint.bin", o->out);
+    file_in(o->out, "checkpoint.bin", path, sizeof path);
     if (status >= 0) status = write_checkpoint(path, s, row, rows, fault);
     if (status < 0 || o->quiet) return status;
     for (k = 0; k < n; k++) printf("%-44s %14.6g %s\n", r[k].text, r[k].value, r[k].unit);
@@ -527,7 +522,7 @@ int main(int argc, char **argv)
     settings o = settings_default();
     option row[OPTION_COUNT];
     int rows = option_rows(row, &o), parsed = options_parse(argc, argv, about, row, rows);
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     mpm_spray s;
     mpm_spray_desc d;
     mpm_spray_window window;
@@ -548,7 +543,7 @@ int main(int argc, char **argv)
         return complain(&fault);
     }
     if (mpm_io_make_directory(o.out, &fault) < 0) return complain(&fault);
-    snprintf(path, sizeof path, "%s/impacts.csv", o.out);
+    file_in(o.out, "impacts.csv", path, sizeof path);
     if (mpm_io_csv_begin(&impacts, path, IMPACT_COLUMNS, note, &fault) < 0) return complain(&fault);
     if (spray_columns_init(&columns, (size_t)d.capacity)) return fprintf(stderr, "error: no memory\n"), 1;
     status = run(&s, &o, steps, &columns, note, &cpu, &fault);

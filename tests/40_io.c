@@ -4,6 +4,11 @@
 #include "mpm_io.h"
 
 #include <locale.h>
+#ifdef __linux__
+#include <dirent.h>
+#include <signal.h>
+#include <sys/resource.h>
+#endif
 
 #include "check.h"
 #include "png.h"
@@ -65,6 +70,24 @@ static void write_text(const char *path, const char *text)
     fclose(out);
 }
 
+/* How many entries of a folder end in ".part"; 0 where folders cannot be read. */
+static int parts_in(const char *folder)
+{
+    int n = 0;
+#ifdef __linux__
+    DIR *d = opendir(folder);
+    const struct dirent *e;
+    while (d && (e = readdir(d)) != NULL) {
+        const size_t length = strlen(e->d_name);
+        n += length > 5 && strcmp(e->d_name + length - 5, ".part") == 0;
+    }
+    if (d) closedir(d);
+#else
+    (void)folder;
+#endif
+    return n;
+}
+
 static uint32_t random_state = 12345;
 static uint32_t random_next(void)
 {
@@ -96,6 +119,19 @@ static void test_messages(void)
     p.step = 0;
     mpm_io_progress_text(text, sizeof text, &p);
     holds("progress before the first step", strcmp(text, "step 0/2400000  0 %  t = 9.7 ns") == 0);
+    p.step = INT64_C(3000000000);
+    p.steps = INT64_C(4000000000);
+    mpm_io_progress_text(text, sizeof text, &p);
+    holds("progress beyond 32 bits", strncmp(text, "step 3000000000/4000000000  75 %", 32) == 0);
+    p.step = 2;
+    p.steps = 1;
+    p.elapsed = 1e300;
+    mpm_io_progress_text(text, sizeof text, &p);
+    holds("progress past the end", strncmp(text, "step 2/1  100 %", 15) == 0 && strstr(text, "left 0:00"));
+    p.step = INT64_MAX;
+    p.first_step = INT64_MIN;
+    mpm_io_progress_text(text, sizeof text, &p);
+    holds("progress of any counts", strstr(text, "/1  100 %") != NULL && strstr(text, "left 0:00") != NULL);
 }
 
 static void test_numbers(void)
@@ -149,9 +185,84 @@ static void test_folders(void)
     equal("empty path", mpm_io_make_directory("", &f), MPM_ERR_ARGUMENT);
 }
 
+#ifdef __linux__
+/* Letters of a name that part folders or name drives elsewhere; the names a file is made in. */
+static void test_names(void)
+{
+    static const char *const name[] = {"run 12:", "12:30:", "case:/frames", "T=300K:v=800", "odd\\name", "back\\"};
+    static char lengthy[3000];
+    char path[200];
+    mpm_io_csv t;
+    int k;
+    for (k = 0; k < 6; k++) {
+        snprintf(path, sizeof path, FOLDER "/names/%s", name[k]);
+        equal(path, mpm_io_make_directory(path, NULL), MPM_OK);
+        holds("... is there, by that name", exists(path));
+    }
+    holds("nothing else", !exists(FOLDER "/names/odd") && !exists(FOLDER "/names/Al"));
+    strcpy(lengthy, FOLDER "/names");
+    while (strlen(lengthy) < 2900) strcat(lengthy, "/0123456789012345678901234567890123456789");
+    equal("a folder whose path has 2900 bytes", mpm_io_make_directory(lengthy, NULL), MPM_OK);
+    strcat(lengthy, "/impact.json");
+    equal("... and a file in it", mpm_io_csv_begin(&t, lengthy, "a", NULL, NULL), MPM_OK);
+    equal("... is written", mpm_io_csv_end(&t, NULL), MPM_OK);
+    holds("... under its whole name", exists(lengthy));
+    strcat(lengthy, "2");
+    holds("... and no other", !exists(lengthy));
+}
+
+/* A file that is neither followed nor waited for, a disc that is full, descriptors that are used up. */
+static void test_hostile(void)
+{
+    const char *series = FOLDER "/ten.pvd";
+    struct rlimit usual, few;
+    mpm_io_csv t;
+    mpm_fault f;
+    int k, status;
+    k = system("cd " FOLDER " && rm -f victim keep.csv.part && ln -s victim keep.csv.part && rm -f fifo.csv.part"
+               " && mkfifo fifo.csv.part");
+    equal("a link and a FIFO planted", k, 0);
+    mpm_io_csv_begin(&t, FOLDER "/fifo.csv", "a", NULL, NULL);
+    equal("a FIFO is not waited for", mpm_io_csv_end(&t, &f), MPM_OK);
+    mpm_io_csv_begin(&t, FOLDER "/keep.csv", "a", NULL, NULL);
+    mpm_io_csv_drop(&t);
+    holds("a link is not followed", !exists(FOLDER "/victim"));
+    equal("... and swept away", system("cd " FOLDER " && rm keep.csv.part fifo.csv.part"), 0);
+    mpm_io_csv_begin(&t, FOLDER "/keep.csv", "a", NULL, NULL);
+    signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &usual);
+    few = usual;
+    few.rlim_cur = 0;
+    setrlimit(RLIMIT_FSIZE, &few);
+    mpm_io_csv_integer(&t, 1);
+    status = mpm_io_csv_end(&t, &f);
+    setrlimit(RLIMIT_FSIZE, &usual);
+    equal("disc full", status, MPM_ERR_FILE);
+    holds("untouched on a full disc", file_is(FOLDER "/keep.csv", "precious"));
+    equal("no .part on a full disc", parts_in(FOLDER), 0);
+
+    mpm_io_pvd_begin(series, &f);
+    for (k = 0; k < 10; k++) {
+        char frame[20];
+        snprintf(frame, sizeof frame, "p%d.vtu", k);
+        mpm_io_pvd_add(series, frame, k, &f);
+    }
+    getrlimit(RLIMIT_NOFILE, &usual);
+    few = usual;
+    for (few.rlim_cur = 3; few.rlim_cur < 6; few.rlim_cur++) { /* none, one, two more files may be open */
+        setrlimit(RLIMIT_NOFILE, &few);
+        status = mpm_io_pvd_add(series, "last.vtu", 99, &f);
+        setrlimit(RLIMIT_NOFILE, &usual);
+        holds("a series is whole whatever can be opened", contains(series, "p0.vtu") && contains(series, "p9.vtu"));
+        holds("... and says whether it took the frame", (status == MPM_OK) == contains(series, "last.vtu"));
+    }
+    equal("no .part of a series", parts_in(FOLDER), 0);
+}
+#endif
+
 static void test_failures(void)
 {
-    static char lengthy[MPM_IO_PATH + 10];
+    static char lengthy[6000];
     mpm_io_csv t;
     mpm_io_json j;
     const unsigned char c[3] = {0, 0, 0};
@@ -170,12 +281,12 @@ static void test_failures(void)
     equal("pvd nowhere", mpm_io_pvd_add(nowhere, "x.vtu", 0, &f), MPM_ERR_FILE);
     equal("png nowhere", mpm_io_png(nowhere, c, 1, 1, NULL, &f), MPM_ERR_FILE);
     equal("checkpoint nowhere", mpm_io_checkpoint_write(nowhere, NULL, NULL, 0, &f), MPM_ERR_FILE);
-    holds("nothing is left", !exists(nowhere) && !exists(FOLDER "/missing/file.part"));
-    equal("path too long", mpm_io_png(lengthy, c, 1, 1, NULL, &f), MPM_ERR_ARGUMENT);
+    holds("nothing is left", !exists(nowhere) && !exists(FOLDER "/missing"));
+    equal("path too long for any system", mpm_io_png(lengthy, c, 1, 1, NULL, &f), MPM_ERR_FILE);
 
     mpm_io_make_directory(FOLDER "/taken", NULL); /* a folder has the name: renaming must fail */
     equal("name taken by a folder", mpm_io_png(FOLDER "/taken", c, 1, 1, NULL, &f), MPM_ERR_FILE);
-    holds("its .part is removed", !exists(FOLDER "/taken.part"));
+    equal("its .part is removed", parts_in(FOLDER), 0);
 
     write_text(FOLDER "/keep.csv", "precious");
     mpm_io_csv_begin(&t, FOLDER "/keep.csv", "a,b", NULL, NULL);
@@ -183,25 +294,20 @@ static void test_failures(void)
     holds("untouched while writing", file_is(FOLDER "/keep.csv", "precious"));
     equal("half a row", mpm_io_csv_end(&t, &f), MPM_ERR_ARGUMENT);
     holds("untouched after failing", file_is(FOLDER "/keep.csv", "precious"));
-    holds("no .part stays", !exists(FOLDER "/keep.csv.part"));
+    equal("no .part stays", parts_in(FOLDER), 0);
     mpm_io_csv_begin(&t, FOLDER "/keep.csv", "a,b", NULL, NULL);
     mpm_io_csv_integer(&t, 1);
-    holds("a table being written", exists(FOLDER "/keep.csv.part"));
+#ifdef __linux__
+    equal("a table being written", parts_in(FOLDER), 1);
+#endif
     mpm_io_csv_drop(&t);
     holds("dropped: untouched", file_is(FOLDER "/keep.csv", "precious"));
-    holds("dropped: no .part stays", !exists(FOLDER "/keep.csv.part"));
+    equal("dropped: no .part stays", parts_in(FOLDER), 0);
     mpm_io_csv_begin(&t, nowhere, "a", NULL, NULL);
     mpm_io_csv_drop(&t); /* one that could not be begun */
     holds("dropped: nothing is left", !exists(nowhere));
-#ifdef __linux__
-    if (system("ln -sf /dev/full " FOLDER "/keep.csv.part") == 0) { /* a disc without room */
-        mpm_io_csv_begin(&t, FOLDER "/keep.csv", "a", NULL, NULL);
-        mpm_io_csv_integer(&t, 1);
-        equal("disc full", mpm_io_csv_end(&t, &f), MPM_ERR_FILE);
-        holds("untouched on a full disc", file_is(FOLDER "/keep.csv", "precious"));
-        holds("no .part on a full disc", !exists(FOLDER "/keep.csv.part"));
-    }
-#endif
+    equal("a table without columns", mpm_io_csv_begin(&t, FOLDER "/none.csv", NULL, NULL, &f), MPM_ERR_ARGUMENT);
+    equal("... has no file", mpm_io_csv_end(&t, NULL), MPM_ERR_FILE);
 }
 
 /* ---- a world ------------------------------------------------------------------------------- */
@@ -299,7 +405,7 @@ static void test_format(void)
     mpm_io_drop(&f);
     mpm_io_drop(&f); /* harmless */
     holds("... dropped: as it was", contains_bytes(FOLDER "/bytes", (const char *)three, 3));
-    holds("... without a .part", !exists(FOLDER "/bytes.part"));
+    equal("... without a .part", parts_in(FOLDER), 0);
 }
 
 /* ---- JSON and CSV -------------------------------------------------------------------------- */
@@ -353,7 +459,17 @@ static void test_json(void)
     mpm_io_json_begin(&j, FOLDER "/open.json", &f);
     mpm_io_json_open(&j, "left open");
     equal("an open object", mpm_io_json_end(&j, &f), MPM_ERR_ARGUMENT);
-    holds("... makes no file", !exists(FOLDER "/open.json") && !exists(FOLDER "/open.json.part"));
+    holds("... makes no file", !exists(FOLDER "/open.json") && parts_in(FOLDER) == 0);
+    mpm_io_json_begin(&j, path, &f);
+    mpm_io_json_string(&j, "k\xe4y", "latin \xe4, cut \xc3, far \xf4\x90\x80\x80, half \xed\xa0\x80, "
+                                     "long \xc0\xaf, \x7f\x01");
+    mpm_io_json_string(&j, "good", "\xc2\xb5 \xe2\x88\x9a \xf0\x9f\x98\x80");
+    equal("json of bytes that are no text", mpm_io_json_end(&j, &f), MPM_OK);
+    holds("... is UTF-8", contains(path, "\"k\xef\xbf\xbdy\": \"latin \xef\xbf\xbd, cut \xef\xbf\xbd, "
+                                         "far \xef\xbf\xbd"));
+    holds("... and nothing else", !contains(path, "\xed\xa0") && !contains(path, "\xc0\xaf") &&
+                                      contains(path, "\x7f\\u0001\"") &&
+                                      contains(path, "\"\xc2\xb5 \xe2\x88\x9a \xf0\x9f\x98\x80\""));
 }
 
 static void test_csv(void)
@@ -429,6 +545,10 @@ static void test_vtu(void)
     d.field_count = 5;
     d.time = 0.1;
     d.note = "a -- b";
+    fields[0].name = "odd \x02\xe4\xef\xbf\xbf \xc2\xb5 ---";
+    equal("vtu of bytes that are no text", mpm_io_vtu(path, &d, &f), MPM_OK);
+    holds("... is valid XML", contains(path, "\"odd \xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd \xc2\xb5 - - -\""));
+    fields[0].name = "temperature";
     equal("vtu written", mpm_io_vtu(path, &d, &f), MPM_OK);
     file = slurp(path, &n);
     a = vtu_array(file, n, "Points", type, &bytes);
@@ -481,10 +601,21 @@ static void test_vtu(void)
     equal("no points", mpm_io_vtu(FOLDER "/empty.vtu", &d, &f), MPM_OK);
 }
 
+static void write_bytes(const char *path, const unsigned char *data, size_t n)
+{
+    FILE *out = fopen(path, "wb");
+    if (!out) return;
+    fwrite(data, 1, n, out);
+    fclose(out);
+}
+
 static void test_pvd(void)
 {
+    static const unsigned char zero[] = "<?xml?>\n<VTKFile>\n  <Collection>\n\0\n  </Collection>\n</VTKFile>\n";
+    static char lengthy[5001];
     const char *path = FOLDER "/series.pvd";
     mpm_fault f;
+    memset(lengthy, 'n', sizeof lengthy - 1);
     equal("pvd begins", mpm_io_pvd_begin(path, &f), MPM_OK);
     equal("first frame", mpm_io_pvd_add(path, "f-000.vtu", 0, &f), MPM_OK);
     equal("second frame", mpm_io_pvd_add(path, "f-001.vtu", 0.5, &f), MPM_OK);
@@ -501,17 +632,17 @@ static void test_pvd(void)
           MPM_ERR_FILE);
     holds("... and kept", file_is(FOLDER "/other.pvd", "<VTKFile>\n"));
     equal("a name that is no name", mpm_io_pvd_add(path, "a\"b", 1, &f), MPM_ERR_ARGUMENT);
+    equal("... nor one of control characters", mpm_io_pvd_add(path, "a\x01", 1, &f), MPM_ERR_ARGUMENT);
+    equal("... nor one that is not UTF-8", mpm_io_pvd_add(path, "a\xe4", 1, &f), MPM_ERR_ARGUMENT);
+    equal("one of 5000 bytes", mpm_io_pvd_add(path, lengthy, 1, &f), MPM_OK);
+    equal("... that is replaced", mpm_io_pvd_add(path, lengthy, 2, &f), MPM_OK);
+    holds("... as others are", contains(path, "timestep=\"2\"") && !contains(path, "timestep=\"1\""));
+    write_bytes(FOLDER "/zero.pvd", zero, sizeof zero - 1);
+    equal("a line that begins with a zero", mpm_io_pvd_add(FOLDER "/zero.pvd", "x.vtu", 1, &f), MPM_ERR_FILE);
+    equal("no .part", parts_in(FOLDER), 0);
 }
 
 /* ---- checkpoints --------------------------------------------------------------------------- */
-
-static void write_bytes(const char *path, const unsigned char *data, size_t n)
-{
-    FILE *out = fopen(path, "wb");
-    if (!out) return;
-    fwrite(data, 1, n, out);
-    fclose(out);
-}
 
 static void test_checkpoint(void)
 {
@@ -753,7 +884,9 @@ static void test_png(void)
 {
     enum { WIDE = 1200, HIGH = 900 };
     static unsigned char pixels[3 * WIDE * HIGH];
+    static char lengthy[3001];
     const char *path = FOLDER "/picture.png";
+    unsigned char *rgb;
     mpm_fault f;
     size_t n, i;
     int x, y;
@@ -765,7 +898,14 @@ static void test_png(void)
     equal("no pixels", mpm_io_png(path, NULL, 1, 1, NULL, &f), MPM_ERR_ARGUMENT);
     for (i = 0; i < (size_t)20 * 10 * 3; i++) pixels[i] = (unsigned char)(i % 60 < 30 ? 255 : i / 60 * 20);
     holds("a small picture comes back", comes_back(path, pixels, 20, 10));
-    holds("its note is kept", contains_bytes(path, "Description\0a note", 18));
+    holds("its note is kept", contains_bytes(path, "iTXtDescription\0\0\0\0\0a note", 26));
+    memset(lengthy, 'n', sizeof lengthy - 1);
+    memcpy(lengthy + 995, "\xc2\xb5\xe4", 3);
+    equal("a note of 3000 bytes", mpm_io_png(path, pixels, 20, 10, lengthy, &f), MPM_OK);
+    holds("... is whole and UTF-8", contains_bytes(path, "n\xc2\xb5\xef\xbf\xbdnnnn", 10));
+    rgb = read_png(path, &x, &y); /* checks the sums */
+    holds("... in a picture that reads", rgb && x == 20 && y == 10);
+    free(rgb);
     holds("a single pixel comes back", comes_back(path, pixels, 1, 1));
 
     for (i = 0; i < (size_t)333 * 257 * 3; i++) pixels[i] = (unsigned char)(random_next() >> 12);
@@ -793,6 +933,10 @@ int main(void)
     test_numbers();
     test_folders();
     test_failures();
+#ifdef __linux__
+    test_names();
+    test_hostile();
+#endif
     test_format();
     test_json();
     test_csv();

@@ -39,7 +39,7 @@ static unsigned char *bytes_of(const char *folder, const char *name, size_t *n)
 {
     static unsigned char *kept[2];
     static int turn;
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     FILE *f = fopen(file_in(folder, name, path, sizeof path), "rb");
     *n = 0;
     if (!f) return NULL;
@@ -164,7 +164,7 @@ static void leaders(void)
 static void forget(const char *folder, const char *option_name)
 {
     size_t n;
-    char *text = (char *)bytes_of(folder, "summary.json", &n), path[MPM_IO_PATH], *at, *end;
+    char *text = (char *)bytes_of(folder, "summary.json", &n), path[PATH_BYTES], *at, *end;
     FILE *f;
     at = text ? strstr(text, option_name) : NULL;
     CHECK_TRUE(option_name, at != NULL);
@@ -182,7 +182,7 @@ static void forget(const char *folder, const char *option_name)
 static void change(const char *folder, const char *from, const char *to)
 {
     size_t n;
-    char *text = (char *)bytes_of(folder, "summary.json", &n), path[MPM_IO_PATH];
+    char *text = (char *)bytes_of(folder, "summary.json", &n), path[PATH_BYTES];
     const char *at = text ? strstr(text, from) : NULL;
     FILE *f = at ? fopen(file_in(folder, "summary.json", path, sizeof path), "wb") : NULL;
     CHECK_TRUE(from, f != NULL);

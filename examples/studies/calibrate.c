@@ -36,7 +36,7 @@ static int list(const calibration *q, const study *s)
 
 static int write_tasks(const calibration *q, const study *s, mpm_fault *fault)
 {
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     double value[STUDY_VALUES];
     mpm_io_csv t;
     int size;
@@ -87,7 +87,7 @@ static void write_side(mpm_io_json *j, const calibration *q, int size, const cal
 static int write_summary(const calibration *q, const calibration_result *r, const study *s, const option *o, int n,
                          mpm_fault *fault)
 {
-    char path[MPM_IO_PATH], name[40];
+    char path[PATH_BYTES], name[40];
     mpm_io_json j;
     int k;
     mpm_io_json_begin(&j, file_in(s->folder, "summary.json", path, sizeof path), fault);
@@ -128,7 +128,7 @@ static void print_result(const calibration *q, const calibration_result *r, cons
 static int collect(const calibration *q, const study *s, const option *o, int n, char *message, size_t room)
 {
     static calibration_result r;
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     mpm_fault fault;
     calibration_collect(q, s, &r);
     if (r.side[0].tests + r.side[1].tests == 0) {

@@ -41,7 +41,7 @@ static int by_velocity(const void *a, const void *b)
 
 static int write_curve(const request *q, const critical_curve *curve, mpm_fault *fault)
 {
-    char path[MPM_IO_PATH], columns[1000] = "grid_offset_um,velocity_m_s,bonds";
+    char path[PATH_BYTES], columns[1000] = "grid_offset_um,velocity_m_s,bonds";
     mpm_io_csv t;
     int k, v;
     for (v = 0; v < STUDY_CPU; v++) {
@@ -63,7 +63,7 @@ static int draw_curve(const request *q, const critical_curve *curve, mpm_fault *
 {
     static mpm_real x[CRITICAL_RUNS], y[2][CRITICAL_RUNS];
     mpm_draw_curve line[2][OFFSETS];
-    char name[OFFSETS][40], path[MPM_IO_PATH];
+    char name[OFFSETS][40], path[PATH_BYTES];
     mpm_draw_plot_desc d[2];
     int k, p, count = 0;
     for (k = 0; k < curve->runs; k++) {
@@ -99,7 +99,7 @@ static void write_answer(mpm_io_json *j, const critical_answer *a)
 static int write_summary(const request *q, const findings *f, mpm_fault *fault)
 {
     const critical_spread *s = &f->spread;
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     mpm_io_json j;
     int k;
     mpm_io_json_begin(&j, file_in(q->s.folder, "summary.json", path, sizeof path), fault);

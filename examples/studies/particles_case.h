@@ -294,7 +294,7 @@ static inline int particles_frame(const impact *s, particles_case *q)
 /* particles.csv */
 static inline int particles_table(const particles_case *q, const particle_report *r)
 {
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     mpm_fault fault;
     mpm_io_csv t;
     long a;
@@ -321,7 +321,7 @@ static inline int particles_table(const particles_case *q, const particle_report
 /* pairs.csv */
 static inline int particles_pairs(const impact *s, const particles_case *q)
 {
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     mpm_fault fault;
     mpm_io_csv t;
     int32_t a, b;
@@ -352,7 +352,7 @@ static inline int particles_summary(const impact *s, const particles_case *q, co
     const mpm_world *w = &s->world;
     const mpm_totals sums = mpm_body_totals(w, -1);
     long fates[PARTICLE_FATES] = {0}, a;
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     mpm_fault fault;
     mpm_io_json j;
     int k;
@@ -405,7 +405,7 @@ static inline int particles_finished(const particles_case *q)
     impact_case base = q->base, usual = impact_case_default();
     option o[IMPACT_OPTIONS], plain[IMPACT_OPTIONS];
     int n = impact_options(&base, o), plain_n = impact_options(&usual, plain), a;
-    char path[MPM_IO_PATH], *row;
+    char path[PATH_BYTES], *row;
     const char *count;
     long k;
     option_drop(o, &n, "gap"); /* by the places of the particles */
@@ -432,7 +432,7 @@ static inline int particles_finished(const particles_case *q)
 static inline int particles_done(const particles_case *q)
 {
     static char text[200000];
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     const char *frames;
     if (!particles_finished(q)) return 0;
     text_in(file_in(q->out.folder, "summary.json", path, sizeof path), text, sizeof text);
@@ -455,9 +455,8 @@ static inline const char *particles_text(const impact *s, const particles_case *
     size_t used = 0;
     int n = impact_options(&c, o), k;
     for (k = 0; k < n; k++) {
-        char value[256];
-        option_text(&o[k], value, sizeof value);
-        used = mpm_io_line(text, sizeof text, used, o[k].name, value);
+        char number[OPTION_NUMBER];
+        used = mpm_io_line(text, sizeof text, used, o[k].name, option_text(&o[k], number));
     }
     used = mpm_io_line_number(text, sizeof text, used, "frames", (double)q->out.frames);
     used = mpm_io_line_number(text, sizeof text, used, "dt", (double)s->dt);
@@ -486,7 +485,7 @@ static inline mpm_status particles_checkpoint(impact *s, particles_case *q, int 
 static inline int particles_save(impact *s, particles_case *q)
 {
     const clock_t mark = clock();
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     mpm_fault fault;
     const int ok = particles_checkpoint(s, q, 1, file_in(q->out.folder, "checkpoint.bin", path, sizeof path),
                                         &fault) >= 0;
@@ -497,7 +496,7 @@ static inline int particles_save(impact *s, particles_case *q)
 /* Goes on where an earlier run of this scene was left, or begins the output. Returns 1, or 0 after a message. */
 static inline int particles_resume(impact *s, particles_case *q)
 {
-    char path[MPM_IO_PATH], text[200];
+    char path[PATH_BYTES], text[200];
     mpm_fault fault;
     FILE *f = fopen(file_in(q->out.folder, "checkpoint.bin", path, sizeof path), "rb");
     if (f) {
@@ -543,7 +542,7 @@ static inline int particles_run(impact *s, particles_case *q)
 static inline int particles_main(particles_case *q, const option *o, int n)
 {
     static particle_report r[PARTICLES];
-    char message[400], path[MPM_IO_PATH];
+    char message[400], path[PATH_BYTES];
     impact s;
     int status;
     if (!particles_begin(&s, q, message, sizeof message)) return !complain(message);

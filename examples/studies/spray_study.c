@@ -151,36 +151,111 @@ static int run_one(const run_case *c, double *value)
 
 /* ---- the log ------------------------------------------------------------------------------- */
 
-/* Appends one finished run. Returns 0, or -1 after a message. */
+#define RECORD_BYTES (40 * (8 + VALUES) + 40)
+
+/* FNV-1a, 64 bits, of n characters. */
+static uint64_t checksum(const char *text, size_t n)
+{
+    uint64_t h = UINT64_C(14695981039346656037);
+    size_t i;
+    for (i = 0; i < n; i++) h = (h ^ (uint64_t)(unsigned char)text[i]) * UINT64_C(1099511628211);
+    return h;
+}
+
+static size_t put_number(char *line, size_t used, double value)
+{
+    char number[40];
+    mpm_io_number_text(number, sizeof number, value);
+    used = mpm_append(line, RECORD_BYTES, used, number);
+    return mpm_append(line, RECORD_BYTES, used, " ");
+}
+
+static size_t put_sum(char *line, size_t used)
+{
+    const uint64_t h = checksum(line, used);
+    char text[40];
+    snprintf(text, sizeof text, "%08lx%08lx\n", (unsigned long)(h >> 32), (unsigned long)(h & 0xffffffffu));
+    return mpm_append(line, RECORD_BYTES, used, text);
+}
+
+/* A run as a line: the case, the values, and behind them the checksum of all that stands before it. */
+static void record_line(const record *r, char line[RECORD_BYTES])
+{
+    const double of_case[8] = {r->c.reading, r->c.speed, r->c.alpha, r->c.shape,
+                               r->c.low,     r->c.high,  (double)r->c.seed, r->c.time};
+    size_t used = 0;
+    int k;
+    for (k = 0; k < 8; k++) used = put_number(line, used, of_case[k]);
+    for (k = 0; k < VALUES; k++) used = put_number(line, used, r->value[k]);
+    put_sum(line, used);
+}
+
+/* Reads such a line. Returns 1, or 0 if a byte of it is missing or another. */
+static int record_of(const char *line, record *r)
+{
+    char again[RECORD_BYTES], *at = (char *)line;
+    double c[8];
+    int k;
+    for (k = 0; k < 8; k++) c[k] = strtod(at, &at);
+    for (k = 0; k < VALUES; k++) r->value[k] = strtod(at, &at);
+    if (!(fabs(c[0]) < READINGS) || !(fabs(c[6]) < 1e9)) return 0;
+    r->c.reading = (int)c[0];
+    r->c.speed = c[1];
+    r->c.alpha = c[2];
+    r->c.shape = c[3];
+    r->c.low = c[4];
+    r->c.high = c[5];
+    r->c.seed = (long)c[6];
+    r->c.time = c[7];
+    record_line(r, again);
+    return strcmp(line, again) == 0;
+}
+
+/* Appends one finished run, on a line of its own also where the last one was cut short. Returns 0, or -1 after a
+   message. */
 static int log_write(const study *st, const record *r)
 {
-    FILE *f = fopen(st->log, "a");
-    int k, bad;
+    FILE *f = fopen(st->log, "ab+");
+    char line[RECORD_BYTES];
+    int bad, cut = 0;
     if (!f) return fprintf(stderr, "error: cannot write %s\n", st->log), -1;
-    fprintf(f, "%d %.17g %.17g %.17g %.17g %.17g %ld %.17g", r->c.reading, r->c.speed, r->c.alpha, r->c.shape, r->c.low,
-            r->c.high, r->c.seed, r->c.time);
-    for (k = 0; k < VALUES; k++) fprintf(f, " %.17g", r->value[k]);
-    fprintf(f, "\n");
-    bad = ferror(f);
+    if (fseek(f, -1, SEEK_END) == 0) cut = fgetc(f) != '\n';
+    record_line(r, line);
+    bad = fseek(f, 0, SEEK_END) != 0 || (cut && fputs("\n", f) == EOF) || fputs(line, f) == EOF;
     if (fclose(f) || bad) return fprintf(stderr, "error: cannot write %s\n", st->log), -1;
     return 0;
 }
 
-/* Reads what earlier runs of the study have finished; a last line cut short is left out. */
-static void log_read(study *st)
+/* Takes a line of the log; one that is no record is left out, and its run made again. */
+static void log_take(study *st, const char *line, size_t length)
 {
-    FILE *f = fopen(st->log, "r");
-    if (!f) return;
-    while (st->count < RECORDS) {
-        record *r = &st->records[st->count];
-        int k, got = fscanf(f, "%d %lf %lf %lf %lf %lf %ld %lf", &r->c.reading, &r->c.speed, &r->c.alpha, &r->c.shape,
-                            &r->c.low, &r->c.high, &r->c.seed, &r->c.time);
-        for (k = 0; k < VALUES && got == 8; k++)
-            if (fscanf(f, "%lf", &r->value[k]) != 1) got = 0;
-        if (got != 8) break;
-        st->count++;
+    record *r = &st->records[st->count];
+    if (strlen(line) == length && record_of(line, r)) st->count++;
+    else fprintf(stderr, "%s: a line is damaged: what it held is run again\n", st->log);
+}
+
+/* Reads what earlier runs of the study have finished. Returns 0, or -1 after a message. */
+static int log_read(study *st)
+{
+    char line[RECORD_BYTES];
+    size_t n = 0;
+    int c, bad;
+    FILE *f;
+    errno = 0;
+    f = fopen(st->log, "rb");
+    if (!f && errno == ENOENT) return 0;
+    if (!f) return fprintf(stderr, "error: cannot read %s\n", st->log), -1;
+    while (st->count < RECORDS && (c = fgetc(f)) != EOF) {
+        if (n + 1 < sizeof line) line[n++] = (char)c; /* too long: no record either */
+        line[n] = 0;
+        if (c != '\n') continue;
+        log_take(st, line, n);
+        n = 0;
     }
+    if (n > 0) log_take(st, line, n);
+    bad = ferror(f);
     fclose(f);
+    return bad ? fprintf(stderr, "error: cannot read %s\n", st->log), -1 : 0;
 }
 
 static const record *find(const study *st, const run_case *c)
@@ -303,7 +378,7 @@ static double of_range(const study *st, int range, int alpha, int value)
 
 static mpm_status write_table(const study *st, mpm_fault *fault)
 {
-    char path[MPM_IO_PATH],
+    char path[PATH_BYTES],
          columns[1024] = "reading,speed_m_s,alpha,size_shape,release_low_m_s,release_high_m_s,seed,time_s";
     mpm_io_csv csv;
     mpm_status status;
@@ -312,7 +387,7 @@ static mpm_status write_table(const study *st, mpm_fault *fault)
         strcat(columns, ",");
         strcat(columns, value_name[k]);
     }
-    snprintf(path, sizeof path, "%s/spray_runs.csv", st->data);
+    file_in(st->data, "spray_runs.csv", path, sizeof path);
     if ((status = mpm_io_csv_begin(&csv, path, columns, program, fault)) < 0) return status;
     for (n = 0; n < st->count; n++) {
         const run_case *c = &st->records[n].c;
@@ -381,12 +456,12 @@ static mpm_status draw_panels(const char *path, const panel *p, int count, mpm_f
 static mpm_status plot_b7(const study *st, mpm_fault *fault)
 {
     static panel p[4];
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     panel_of_speeds(&p[0], st, VOLUME, 1, "volume fraction", "of the pellet");
     panel_of_speeds(&p[1], st, THICKNESS, 1 / 80e-6, "thickness", "/ median radius");
     panel_of_speeds(&p[2], st, SPREAD, 1e3, "mean spread", "mm");
     panel_of_speeds(&p[3], st, SCATTER, 1e3, "scatter in spread", "mm");
-    snprintf(path, sizeof path, "%s/spray_b7.png", st->data);
+    file_in(st->data, "spray_b7.png", path, sizeof path);
     return draw_panels(path, p, 4, fault);
 }
 
@@ -400,7 +475,7 @@ static void panel_of_times(panel *p, const study *st, const char *title)
 static mpm_status plot_b9(const study *st, mpm_fault *fault)
 {
     static panel p[PANELS];
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     int k, a, t;
     panel_of_speeds(&p[0], st, FRACTION, 1, "deposit fraction, by speed", "deposited / injected");
     panel_begin(&p[1], "deposit fraction, by size shape n", "alpha", "deposited / injected");
@@ -426,14 +501,14 @@ static mpm_status plot_b9(const study *st, mpm_fault *fault)
         for (t = 0; t < TIMES; t++) p[5].y[a][t] = (mpm_real)of(st, BOTH, 1, a, COUNTS + t);
         panel_curve(&p[5], TIMES, "alpha %g", alphas[a]);
     }
-    snprintf(path, sizeof path, "%s/spray_b9.png", st->data);
+    file_in(st->data, "spray_b9.png", path, sizeof path);
     return draw_panels(path, p, 6, fault);
 }
 
 /* The pictures of Figs. 8 and 10 need the particles: the runs are made again, short of resumable. */
 static int pictures(const study *st, mpm_fault *fault)
 {
-    char path[MPM_IO_PATH], title[80];
+    char path[PATH_BYTES], title[80];
     mpm_draw_canvas plume, top;
     spray_columns columns;
     int k, row, bad = 0;
@@ -455,9 +530,9 @@ static int pictures(const study *st, mpm_fault *fault)
                                        title, fault) < 0;
             mpm_spray_free(&s);
         }
-    snprintf(path, sizeof path, "%s/spray_b8.png", st->data);
+    file_in(st->data, "spray_b8.png", path, sizeof path);
     bad = bad || mpm_io_png(path, plume.rgb, plume.width, plume.height, program, fault) < 0;
-    snprintf(path, sizeof path, "%s/spray_b10.png", st->data);
+    file_in(st->data, "spray_b10.png", path, sizeof path);
     bad = bad || mpm_io_png(path, top.rgb, top.width, top.height, program, fault) < 0;
     mpm_draw_canvas_free(&plume);
     mpm_draw_canvas_free(&top);
@@ -682,8 +757,12 @@ static void report_rate(FILE *f, const study *st)
 
 static int report(const study *st, const long_run *l, double once, double eightfold)
 {
-    FILE *f = fopen(st->report, "w");
-    if (!f) return fprintf(stderr, "error: cannot write %s\n", st->report), -1;
+    mpm_io_file file;
+    mpm_fault fault;
+    FILE *f;
+    if (mpm_io_open(&file, st->report, &fault) < 0)
+        return fprintf(stderr, "error: cannot write %s\n", st->report), -1;
+    f = file.stream;
     fprintf(f, "# The spray: source B beside ours\n\n"
                "Made by `build/spray_study --budget %s` (mpm.h %s). Each run lasts %g s of spray; %d seed%s for the "
                "first reading and for the release velocities, one elsewhere. The paper prints these results as "
@@ -710,7 +789,8 @@ static int report(const study *st, const long_run *l, double once, double eightf
                "| ns per particle-step, feed 1e5 /s | - | %.0f |\n"
                "| the same at feed 8e5 /s | < 1.4 times | %.0f, %.2f times |\n",
             l->cpu, l->megabytes, l->per_second, (long)l->not_converged, once, eightfold, eightfold / once);
-    return fclose(f) ? -1 : 0;
+    if (mpm_io_close(&file, &fault) >= 0) return 0;
+    return fprintf(stderr, "error: cannot write %s\n", st->report), -1;
 }
 
 /* ---- main ---------------------------------------------------------------------------------- */
@@ -748,8 +828,7 @@ int main(int argc, char **argv)
     st.seeds = st.budget[0] == 'q' ? 1 : 3;
     st.started = time(NULL);
     if (mpm_io_make_directory(st.data, &fault) < 0) goto fail;
-    log_read(&st);
-    if (plan(&st) || run_long(&l)) return 1;
+    if (log_read(&st) || plan(&st) || run_long(&l)) return 1;
     once = fmin(cost(1e5), cost(1e5));
     eightfold = fmin(cost(8e5), cost(8e5));
     if (write_table(&st, &fault) < 0 || plot_b7(&st, &fault) < 0 || plot_b9(&st, &fault) < 0) goto fail;

@@ -54,19 +54,29 @@ static inline void study_complete(impact_case *c, const char *substrate)
     if (!(fabs(c->time) > 0)) c->time = d > 30 ? 80 * d / 30 : 80;
 }
 
-/* The case in words: version, whether it runs to its end, and every option with its value. */
-static inline void study_key(const impact_case *c, int whole, char *key, size_t n)
+/* The case in words: version, whether it runs to its end, and every option with its value. To be freed; NULL
+   without memory. */
+static inline char *study_key(const impact_case *c, int whole)
 {
     impact_case copy = *c;
     option o[IMPACT_OPTIONS];
-    char value[64];
+    char number[OPTION_NUMBER], *key;
     int k, count = impact_options(&copy, o);
-    size_t at = (size_t)snprintf(key, n, "mpm %s, %d digits, %s", MPM_VERSION, MPM_DIGITS,
-                                 whole ? "full time" : "early end");
-    for (k = 0; k < count && at < n; k++) {
-        option_text(&o[k], value, sizeof value);
-        at += (size_t)snprintf(key + at, n - at, ", %s %s", o[k].name, value);
+    size_t room = 100, used;
+    for (k = 0; k < count; k++) room += strlen(o[k].name) + strlen(option_text(&o[k], number)) + 3;
+    key = (char *)malloc(room);
+    if (!key) return NULL;
+    used = mpm_append(key, room, 0, "mpm " MPM_VERSION ", ");
+    snprintf(number, sizeof number, "%d", MPM_DIGITS);
+    used = mpm_append(key, room, used, number);
+    used = mpm_append(key, room, used, whole ? " digits, full time" : " digits, early end");
+    for (k = 0; k < count; k++) {
+        used = mpm_append(key, room, used, ", ");
+        used = mpm_append(key, room, used, o[k].name);
+        used = mpm_append(key, room, used, " ");
+        used = mpm_append(key, room, used, option_text(&o[k], number));
     }
+    return key;
 }
 
 /* ---- one run ------------------------------------------------------------------------------- */
@@ -355,53 +365,94 @@ static inline uint64_t study_hash(uint64_t h, const char *text)
     return h;
 }
 
-static inline const char *study_hash_text(uint64_t h, char *text, size_t n)
+#define STUDY_HASH_TEXT 17 /* bytes of a hash as text */
+static inline const char *study_hash_text(uint64_t h, char text[STUDY_HASH_TEXT])
 {
-    snprintf(text, n, "%08lx%08lx", (unsigned long)(h >> 32), (unsigned long)(h & 0xffffffffu));
+    snprintf(text, STUDY_HASH_TEXT, "%08lx%08lx", (unsigned long)(h >> 32) & 0xffffffffu,
+             (unsigned long)(h & 0xffffffffu));
     return text;
 }
 
-/* folder/runs/<hash of the key>.json */
-static inline void study_path(const study *s, const char *key, char *path, size_t n)
+/* folder/runs/<hash of the key>.json, or "" where that is too long. Returns path. */
+static inline const char *study_path(const study *s, const char *key, char *path, size_t n)
 {
-    char name[20];
-    snprintf(path, n, "%s/runs/%s.json", s->folder, study_hash_text(study_hash(STUDY_HASH, key), name, sizeof name));
+    char name[40] = "runs/", hash[STUDY_HASH_TEXT];
+    strcat(strcat(name, study_hash_text(study_hash(STUDY_HASH, key), hash)), ".json");
+    return file_in(s->folder, name, path, n);
 }
 
-/* Reads a finished run. Returns 1 if it is there, whole and of this very case. */
-static inline int study_find(const study *s, const impact_case *c, double *value)
+/* The checksum of a run: of its case and of every value as it is written. */
+static inline const char *study_sum(const char *key, const double *value, char text[STUDY_HASH_TEXT])
 {
-    char key[1200], path[MPM_IO_PATH], text[4000], *end;
+    uint64_t h = study_hash(STUDY_HASH, key);
+    char number[OPTION_NUMBER];
     int k;
-    study_key(c, s->whole, key, sizeof key);
-    study_path(s, key, path, sizeof path);
-    if (!strstr(text_in(path, text, sizeof text), key)) return 0;
     for (k = 0; k < STUDY_VALUES; k++) {
-        const char *at = json_value(text, study_name[k]);
+        h = study_hash(h, isfinite(value[k]) ? " " : " null");
+        if (!isfinite(value[k])) continue;
+        mpm_io_number_text(number, sizeof number, value[k]);
+        h = study_hash(h, number);
+    }
+    return study_hash_text(h, text);
+}
+
+/* Takes a run out of the text of its file. Returns 1 if it is whole and of this case. */
+static inline int study_take(const char *text, const char *key, double *value)
+{
+    char sum[STUDY_HASH_TEXT], *end;
+    const char *at = json_value(text, "case");
+    int k;
+    if (!at || *at != '"' || strncmp(at + 1, key, strlen(key)) || at[1 + strlen(key)] != '"') return 0;
+    for (k = 0; k < STUDY_VALUES; k++) {
+        at = json_value(text, study_name[k]);
         if (!at) return 0;
         value[k] = strtod(at, &end);
         if (end == at) value[k] = NAN; /* null */
     }
-    return 1;
+    at = json_value(text, "checksum");
+    study_sum(key, value, sum);
+    return at && *at == '"' && !strncmp(at + 1, sum, strlen(sum)) && at[1 + strlen(sum)] == '"';
+}
+
+/* Reads a finished run. Returns 1 if it is there, whole and of this very case; -1 if its file is there and is not. */
+static inline int study_look(const study *s, const impact_case *c, double *value)
+{
+    char path[PATH_BYTES], text[12000], *key = study_key(c, s->whole);
+    int whole, found;
+    if (!key) return 0;
+    study_path(s, key, path, sizeof path);
+    whole = text_read(path, text, sizeof text);
+    found = study_take(text, key, value);
+    free(key);
+    return found ? 1 : whole && !*text ? 0 : -1;
+}
+
+static inline int study_find(const study *s, const impact_case *c, double *value)
+{
+    return study_look(s, c, value) > 0;
+}
+
+static inline int study_write(const char *path, const char *key, const double *value, mpm_fault *fault)
+{
+    char sum[STUDY_HASH_TEXT];
+    mpm_io_json j;
+    int k;
+    if (mpm_io_json_begin(&j, path, fault) < 0) return 0;
+    mpm_io_json_string(&j, "case", key);
+    for (k = 0; k < STUDY_VALUES; k++) mpm_io_json_number(&j, study_name[k], value[k]);
+    mpm_io_json_string(&j, "checksum", study_sum(key, value, sum));
+    return mpm_io_json_end(&j, fault) >= 0;
 }
 
 static inline int study_keep(const study *s, const impact_case *c, const double *value, char *message, size_t n)
 {
-    char key[1200], path[MPM_IO_PATH];
-    mpm_io_json j;
+    char path[PATH_BYTES], *key = study_key(c, s->whole);
     mpm_fault fault;
-    int k;
-    study_key(c, s->whole, key, sizeof key);
-    snprintf(path, sizeof path, "%s/runs", s->folder);
-    if (mpm_io_make_directory(path, &fault) >= 0) {
-        study_path(s, key, path, sizeof path);
-        mpm_io_json_begin(&j, path, &fault);
-        mpm_io_json_string(&j, "case", key);
-        for (k = 0; k < STUDY_VALUES; k++) mpm_io_json_number(&j, study_name[k], value[k]);
-        if (mpm_io_json_end(&j, &fault) >= 0) return 1;
-    }
-    snprintf(message, n, "cannot write %.300s", path);
-    return 0;
+    int kept = key != NULL && mpm_io_make_directory(file_in(s->folder, "runs", path, sizeof path), &fault) >= 0;
+    if (kept) kept = study_write(study_path(s, key, path, sizeof path), key, value, &fault);
+    free(key);
+    if (!kept) snprintf(message, n, "cannot write %.300s", *path ? path : "a path that is too long");
+    return kept;
 }
 
 /* The values of a case: from the store, or by running it now. Returns 1; 0 with a message; -1 when the
@@ -409,11 +460,15 @@ static inline int study_keep(const study *s, const impact_case *c, const double 
 static inline int study_need(study *s, const impact_case *c, double *value, char *message, size_t n)
 {
     clock_t begun;
-    if (study_find(s, c, value)) {
+    const int found = study_look(s, c, value);
+    if (found > 0) {
         s->done++;
         return 1;
     }
     if (s->limit >= 0 && s->fresh >= s->limit) return -1;
+    if (found < 0)
+        fprintf(stderr, "%s/runs: the record of %g um at %g m/s is damaged or of another case: run again\n", s->folder,
+                c->diameter, c->velocity);
     begun = clock();
     snprintf(s->label, sizeof s->label, "%g um at %g m/s", c->diameter, c->velocity);
     if (!study_run(s, c, value, message, n) || !study_keep(s, c, value, message, n)) return 0;

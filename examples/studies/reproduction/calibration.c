@@ -107,7 +107,7 @@ static int calibration_row(work *w, mpm_io_csv *t, grid g, const char *rule_name
 {
     static calibration_result result;
     const calibration q = calibration_of(g, rule_name);
-    char path[MPM_IO_PATH], name[60];
+    char path[PATH_BYTES], name[60];
     const int status = calibration_run(&q, &w->s, w->message, sizeof w->message);
     if (status <= 0) return status;
     calibration_collect(&q, &w->s, &result);

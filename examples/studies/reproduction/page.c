@@ -36,40 +36,30 @@ int failed(work *w)
 #define BEGIN_MARK "<!-- made by build/reproduction: begin -->\n"
 #define END_MARK "<!-- made by build/reproduction: end -->\n"
 
-/* Writes the old page with the new part into a file. Returns 1, or 0. */
-static int write_around(const work *w, const char *old, const char *path)
+/* The old page, with the new part in the place of the one before or at its end. */
+static void put_page(mpm_io_file *f, const work *w, const char *old)
 {
     const char *from = strstr(old, BEGIN_MARK), *to = from ? strstr(from, END_MARK) : NULL;
-    FILE *f = fopen(path, "wb");
-    int ok;
-    if (!f) return 0;
-    fwrite(old, 1, to ? (size_t)(from - old) : strlen(old), f);
-    if (!to) fputs("\n", f);
-    fputs(BEGIN_MARK, f);
-    fputs(w->text, f);
-    fputs(END_MARK, f);
-    if (to) fputs(to + strlen(END_MARK), f);
-    ok = !ferror(f);
-    return fclose(f) == 0 && ok;
+    mpm_io_put_bytes(f, old, to ? (size_t)(from - old) : strlen(old));
+    if (!to) mpm_io_put(f, "\n");
+    mpm_io_put(f, BEGIN_MARK);
+    mpm_io_put(f, w->text);
+    mpm_io_put(f, END_MARK);
+    if (to) mpm_io_put(f, to + strlen(END_MARK));
 }
 
 int write_page(work *w)
 {
     static char old[400000];
-    char part[MPM_IO_PATH];
-    text_in(w->page, old, sizeof old);
-    if (strlen(old) == sizeof old - 1) {
-        snprintf(w->message, sizeof w->message, "%.300s: longer than %lu characters", w->page,
+    mpm_io_file f;
+    if (!text_read(w->page, old, sizeof old)) {
+        snprintf(w->message, sizeof w->message, "%.300s: cannot be read, or is longer than %lu characters", w->page,
                  (unsigned long)sizeof old - 1);
         return 0;
     }
-    snprintf(part, sizeof part, "%.500s.part", w->page);
-    if (write_around(w, old, part)) {
-        remove(w->page); /* rename() need not replace */
-        if (rename(part, w->page) == 0) return 1;
-    }
-    snprintf(w->message, sizeof w->message, "cannot write %.300s", w->page);
-    return 0;
+    if (mpm_io_open(&f, w->page, &w->fault) < 0) return failed(w);
+    put_page(&f, w, old);
+    return mpm_io_close(&f, &w->fault) >= 0 || failed(w);
 }
 
 /* ---- the data folder ------------------------------------------------------------------------- */
@@ -78,7 +68,7 @@ const char *data_file(const work *w, const char *name, char *path, size_t n) { r
 
 void table_begin(work *w, mpm_io_csv *t, const char *name, const char *columns, const char *note)
 {
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     mpm_io_csv_begin(t, data_file(w, name, path, sizeof path), columns, note, &w->fault);
 }
 
@@ -91,6 +81,6 @@ int table_end(work *w, mpm_io_csv *t, int status)
 
 int picture(work *w, const char *name, const mpm_draw_plot_desc *d)
 {
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     return plots_png(data_file(w, name, path, sizeof path), d, 1, 1, 440, "A-crit", &w->fault) >= 0 || failed(w);
 }

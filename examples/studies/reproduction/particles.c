@@ -13,7 +13,7 @@ typedef struct particle_row {
    with w->message. */
 static int read_particles(work *w, const char *folder, particle_row *row, int count)
 {
-    char path[MPM_IO_PATH], line[400];
+    char path[PATH_BYTES], line[400];
     int n = 0, id;
     FILE *f = fopen(file_in(folder, "particles.csv", path, sizeof path), "rb");
     while (f && n < count && fgets(line, sizeof line, f))
@@ -40,7 +40,7 @@ typedef struct pair_row {
 /* Of bodies a < b; with b < 0 of a and any other: then the sum of the held. */
 static pair_row read_pair(const char *folder, int a, int b)
 {
-    char path[MPM_IO_PATH], line[400];
+    char path[PATH_BYTES], line[400];
     pair_row r = {0, 0};
     double pbcp;
     int i, j, held;
@@ -59,7 +59,7 @@ static pair_row read_pair(const char *folder, int a, int b)
 static double read_summary(const char *folder, const char *key)
 {
     static char text[20000];
-    char path[MPM_IO_PATH];
+    char path[PATH_BYTES];
     const char *at = json_value(text_in(file_in(folder, "summary.json", path, sizeof path), text, sizeof text), key);
     return at ? strtod(at, NULL) : -1;
 }
@@ -84,18 +84,22 @@ static int need_particles(work *w, particles_case *q, const char *folder)
 /* The last picture of a scene into the folder of data; an old one there goes only when there is a new one. */
 static int keep_picture(work *w, const particles_case *q, const char *folder, const char *name)
 {
-    char from[MPM_IO_PATH], to[MPM_IO_PATH];
+    char from[PATH_BYTES], to[PATH_BYTES], frame[40];
     unsigned char part[4096];
+    mpm_io_file out;
     size_t n;
-    FILE *in, *out;
+    FILE *in;
     int ok;
-    snprintf(from, sizeof from, "%s/frame_%04ld.png", folder, q->out.frames - 1);
-    in = fopen(from, "rb");
-    out = in ? fopen(data_file(w, name, to, sizeof to), "wb") : NULL;
-    while (out && (n = fread(part, 1, sizeof part, in)) > 0) fwrite(part, 1, n, out);
-    ok = out && !ferror(in) && !ferror(out);
+    snprintf(frame, sizeof frame, "frame_%04ld.png", q->out.frames - 1);
+    in = fopen(file_in(folder, frame, from, sizeof from), "rb");
+    ok = in && mpm_io_open(&out, data_file(w, name, to, sizeof to), &w->fault) >= 0;
+    while (ok && (n = fread(part, 1, sizeof part, in)) > 0) mpm_io_put_bytes(&out, part, n);
+    if (ok && ferror(in)) {
+        mpm_io_drop(&out);
+        ok = 0;
+    }
+    if (ok) ok = mpm_io_close(&out, &w->fault) >= 0;
     if (in) fclose(in);
-    if (out && fclose(out)) ok = 0;
     if (!ok) snprintf(w->message, sizeof w->message, "cannot copy %.150s to %.100s/%.50s", from, w->data, name);
     return ok;
 }
@@ -215,7 +219,7 @@ static int two_row(work *w, mpm_io_csv *t, const two_runs *r, int at)
 {
     static particles_case q;
     two_result out;
-    char folder[MPM_IO_PATH], name[60], plot[64];
+    char folder[PATH_BYTES], name[60], plot[64];
     int status;
     two_scene(&q, r, at);
     snprintf(name, sizeof name, "two_%s_%g_%g_by_%s%s", r->geometry, r->g.cell, two_offset[at], normal_of[r->normal],
@@ -272,10 +276,11 @@ int ten_particles(work *w)
     const grid g = w->budget == QUICK ? coarse : fine;
     const double spread = 60;
     particle_row row[10];
-    char folder[MPM_IO_PATH];
+    char folder[PATH_BYTES], name[100];
     int k, status;
     if (!ten_scene(w, &q, g, spread)) return 0;
-    snprintf(folder, sizeof folder, "%s/ten_%g_%g_%g", w->s.folder, g.cell, g.spacing, spread);
+    snprintf(name, sizeof name, "ten_%g_%g_%g", g.cell, g.spacing, spread);
+    file_in(w->s.folder, name, folder, sizeof folder);
     if ((status = need_particles(w, &q, folder)) <= 0) return status;
     if (!read_particles(w, folder, row, 10)) return 0;
     say(w, "### A-ten: ten particles\n\nTen of 14 um at 810 m/s at random places and heights, 3D, %.3g/%.3g um, after "

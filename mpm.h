@@ -459,7 +459,10 @@ struct mpm_pair;
 /* A contact law of your own: asked for each pair of bodies at each node that carries both, once in a step,
    between mpm_contact_find and the return to the points. All that is known of the pair is in *p: the slots of
    its nodes (w->node[p->a], p->b) with mass and momentum at k+1, normal, separation, hold, limit. Writes to j the
-   momentum that a shall gain and b lose, and returns 1; or returns 0 for none. Test: 26_extend. */
+   momentum that a shall gain and b lose, and returns 1; or returns 0 for none. It acts on P(k+1) alone in either
+   scheme: what it does along the normal has the energy errors of the thesis's. For a law along the surface only, leave
+   MPM_CONTACT_FRICTION with friction 0 to settle the normal, and give yours by mpm_pair_push between
+   mpm_contact_apply and mpm_g2p. Test: 26_extend. */
 typedef int (*mpm_contact_fn)(void *context, const struct mpm_world *w, const struct mpm_pair *p, mpm_real j[3]);
 
 /* How two bodies meet. */
@@ -670,6 +673,7 @@ typedef struct mpm_rule {
 typedef struct mpm_world {
     mpm_desc desc;
     mpm_real time, dt;       /* now; the step under way, set by mpm_locate */
+    mpm_real dt_last;        /* the step before it, whose rates the points hold */
     long steps;
     mpm_points points;
     mpm_body *body;
@@ -812,8 +816,8 @@ MPM_API void mpm_grid_update(mpm_world *w);
    Test: 23_solid, 25_contact. */
 MPM_API void mpm_contact_find(mpm_world *w);
 
-/* Contact on the pairs: approaching ones, (m_b P_a - m_a P_b) . n > 0 (A 3.29), get the impulse that their rule
-   asks for, at most (m_a P_b - m_b P_a) / (m_a + m_b) on a (A 3.31); separating ones are held as far as
+/* Contact on the pairs, in the scheme of the description: approaching ones, (m_b P_a - m_a P_b) . n > 0 (A 3.29), get
+   the impulse that their rule asks for, at most (m_a P_b - m_b P_a) / (m_a + m_b) on a (A 3.31); separating ones are held as far as
    pair.hold says (A 4.7). Test: 23_solid, 25_contact, 30_bond. */
 MPM_API void mpm_contact_apply(mpm_world *w);
 
@@ -2492,6 +2496,7 @@ MPM_API void mpm_move(mpm_world *w)
     MPM__EACH_RUN(w, MPM__CALL);
 #undef MPM__CALL
     w->time += w->dt;
+    w->dt_last = w->dt;
     w->steps++;
 }
 
@@ -2845,6 +2850,7 @@ MPM_API int mpm_blobs(mpm_world *w, mpm_blob *blob)
     blob[n++] = mpm_blob_of("points", &p->count, sizeof p->count);
     blob[n++] = mpm_blob_of("next id", &w->next_id, sizeof w->next_id);
     blob[n++] = mpm_blob_of("time", &w->time, sizeof w->time);
+    blob[n++] = mpm_blob_of("last step", &w->dt_last, sizeof w->dt_last);
     blob[n++] = mpm_blob_of("steps", &w->steps, sizeof w->steps);
     blob[n++] = mpm_blob_of("ledger", &w->ledger, sizeof w->ledger);
     blob[n++] = mpm_blob_of("retired", &w->retired, sizeof w->retired);

@@ -126,7 +126,7 @@ typedef enum mpm_bond_rule { MPM_BOND_RULE_LIST(MPM_LIST_ENUM) MPM_BOND_RULES } 
 typedef enum mpm_bond_average { MPM_BOND_AVERAGE_LIST(MPM_LIST_ENUM) MPM_BOND_AVERAGES } mpm_bond_average;
 
 /* A growth rule of your own (the general A 4.1): by how much D of a surface point in contact grew in the
-   last step; everything known of the point is in w->points, the step in w->dt. What is not > 0 adds nothing. */
+   last step, of length w->dt_last; everything known of the point is in w->points. What is not > 0 adds nothing. */
 typedef mpm_real (*mpm_bond_fn)(void *context, const mpm_world *w, int32_t point);
 
 /* A decision of your own whether a bond holds: what D the pair gets instead of D, that of A 4.7. At 1 or more it
@@ -300,10 +300,10 @@ MPM_API mpm_real mpm_bond_of_point(const mpm_bond *b, mpm_world *w, int32_t i)
         mpm__bond_count(w->tally, MPM_TALLY_BOND_GROWTH);
         return amount;
     }
-    amount = w->points.plastic_rate[i] * w->dt;
+    amount = w->points.plastic_rate[i] * w->dt_last;
     if (b->rule == MPM_BOND_ENERGY)
         amount *= mpm__von_mises(&w->points, i) * (b->length > 0 ? b->length : w->desc.cell);
-    return mpm_bond_law(b, amount, w->dt, w->tally);
+    return mpm_bond_law(b, amount, w->dt_last, w->tally);
 }
 
 /* The body other than `body` with most mass at a contact node. */

@@ -184,7 +184,7 @@ struct mpm_material;
        typedef struct zerilli { mpm_real c0, c2, c3, c4; } zerilli;
        static mpm_flow zerilli_flow(const void *context, const mpm_material *m, const mpm_material_state *s)
        {
-           const zerilli *c = (const zerilli *)context;
+           const zerilli *c = (const zerilli *)context; (void)m;
            mpm_real heat = s->temperature * (c->c4 * mpm_log(s->plastic_rate) - c->c3);
            mpm_real hard = s->plastic_rate > 0 ? c->c2 * mpm_sqrt(s->plastic_strain) * mpm_exp(heat) : 0;
            mpm_flow f;

@@ -63,7 +63,7 @@ static void contact(node *a, node *b) /* where ball a and block b approach: one 
     double j;
     if (!(a->mass > light && b->mass > light)) return;
     j = (b->mass * dot(a->momentum, g) - a->mass * dot(b->momentum, g)) / size / (a->mass + b->mass);
-    if (j <= 0) return; /* they separate */
+    if (!(j > 0)) return; /* they separate */
     add(a->momentum, -j / size, g), add(a->force, -j / size / dt, g);
     add(b->momentum, j / size, g), add(b->force, j / size / dt, g);
 }

@@ -35,7 +35,7 @@ static mpm_flow voce_flow(const void *context, const mpm_material *m, const mpm_
 
 static mpm_real strain_bond(void *context, const mpm_world *w, int32_t i)
 {
-    return w->points.plastic_rate[i] * w->dt / *(const mpm_real *)context;
+    return w->points.plastic_rate[i] * w->dt_last / *(const mpm_real *)context;
 }
 
 /* ---- a contact law: what has bonded is cohesive ------------------------------------------------- */

@@ -167,6 +167,7 @@ static void find_contact(mpm_world *w)
 static void state_by_hand(mpm_world *w)
 {
     int32_t i;
+    w->dt_last = MPM_R(8e-6);
     for (i = 0; i < w->points.count; i++) {
         w->points.plastic_rate[i] = 425;
         w->points.stress[2][i] = -150;

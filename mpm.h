@@ -50,6 +50,8 @@
      MPM_MALLOC(n), MPM_FREE(p)  IMPL  used only where the caller passes NULL for memory.
      MPM_BLOCK            IMPL    points per constitutive block (default 64).
      MPM_NO_INLINE        IMPL    the kernels are not inlined by force: slower, but quick to compile.
+     MPM_FINITE_MATH      GLOBAL  compile in spite of -ffinite-math-only, which -ffast-math and -Ofast
+                                  bring: values that are not numbers then go unnoticed.
 
    CONVENTIONS
      Units        any consistent system. um, us, ng is the natural one for cold spray: then stress
@@ -91,6 +93,10 @@
 #define MPM_VERSION_PATCH 0
 #define MPM_VERSION_NUMBER 200 /* 10000 major + 100 minor + patch: what the other headers compare */
 #define MPM_VERSION "0.2.0"
+
+#if ((defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)) && !defined(MPM_FINITE_MATH)
+#error "mpm.h checks for NaN and uses infinity: add -fno-finite-math-only (/fp:precise), or define MPM_FINITE_MATH"
+#endif
 
 #ifdef MPM_FLOAT
 typedef float mpm_real;

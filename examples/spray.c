@@ -205,6 +205,10 @@ static int bad_number(const char *name, double value, const char *want)
 static int parse_length(const settings *o, mpm_spray_desc *d, long *steps)
 {
     double count, most;
+    if (strlen(o->out) + 64 > PATH_BYTES || strlen(o->restart) + 64 > PATH_BYTES) {
+        fprintf(stderr, "error: --out and --restart must be shorter than %d bytes\n", PATH_BYTES - 64);
+        return -1;
+    }
     if (o->steps < 0) return bad_number("steps", (double)o->steps, "0 or more");
     if (o->steps == 0 && !(o->time > 0 && o->time < 1e9)) return bad_number("time", o->time, "above 0");
     if (o->frames < 0) return bad_number("frames", (double)o->frames, "0 or more");
@@ -274,9 +278,12 @@ static void write_impact(void *user, const mpm_spray_touch *t)
 
 #define IMPACT_COLUMNS "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,diameter_m,stuck,id,on_deposit"
 
+/* A frame is named by its step: a run that goes on writes the names of the uninterrupted one, and no other's. */
+static void frame_name(char *name, size_t n, long step) { snprintf(name, n, "spray-%09ld.vtu", step); }
+
 /* All particles, in flight and deposited, as one VTK file. */
-static mpm_status write_frame(const char *folder, const mpm_spray *s, spray_columns *c, int number_of_frame,
-                              const char *note, mpm_fault *fault)
+static mpm_status write_frame(const char *folder, const mpm_spray *s, spray_columns *c, const char *note,
+                              mpm_fault *fault)
 {
     static const mpm_real none[3] = {0, 0, 0};
     char path[PATH_BYTES], name[64];
@@ -308,7 +315,7 @@ static mpm_status write_frame(const char *folder, const mpm_spray *s, spray_colu
     d.time = (double)mpm_spray_time(s);
     d.float32 = 1;
     d.note = note;
-    snprintf(name, sizeof name, "spray-%04d.vtu", number_of_frame);
+    frame_name(name, sizeof name, (long)s->tally.step);
     file_in(folder, name, path, sizeof path);
     if ((status = mpm_io_vtu(path, &d, fault)) < 0) return status;
     file_in(folder, "spray.pvd", path, sizeof path);
@@ -341,17 +348,27 @@ static mpm_status write_pictures(const char *folder, const mpm_spray *s, spray_c
 
 /* ---- restart ------------------------------------------------------------------------------- */
 
-/* What must be the same for a run that goes on: the options that make the spray, one a line. */
+/* The options that do not make the spray: a run that goes on may have others. */
+static int is_free(const char *name)
+{
+    static const char *const word[] = {"steps", "time", "out", "restart", "frames", "quiet"};
+    size_t k;
+    for (k = 0; k < sizeof word / sizeof *word; k++)
+        if (!strcmp(name, word[k])) return 1;
+    return 0;
+}
+
+#define TEXT_ROOM (OPTION_COUNT * 320)
+
+/* What must be the same for a run that goes on, one option a line. */
 static const char *spray_text(const option *o, int n)
 {
-    static const char *const free[] = {"steps", "time", "out", "restart", "frames", "quiet"};
-    static char text[4096];
+    static char text[TEXT_ROOM];
     size_t used = 0;
-    int i, k;
+    int i;
     for (i = 0; i < n; i++) {
         char number[OPTION_NUMBER];
-        for (k = 0; k < 6 && strcmp(o[i].name, free[k]); k++) continue;
-        if (k < 6) continue;
+        if (is_free(o[i].name)) continue;
         used = mpm_io_line(text, sizeof text, used, o[i].name, option_text(&o[i], number));
     }
     return text;
@@ -371,6 +388,80 @@ static mpm_status read_checkpoint(const char *path, mpm_spray *s, const option *
     return status;
 }
 
+static long steps_per_frame(const settings *o, long steps)
+{
+    return o->frames > 0 ? (steps + o->frames - 1) / o->frames : steps + 1;
+}
+
+/* Begins the series with those frames in the folder that this run has or would have written. */
+static mpm_status begin_series(const settings *o, const mpm_spray *s, long every, mpm_fault *fault)
+{
+    char path[PATH_BYTES], frame[PATH_BYTES], name[64];
+    mpm_status status;
+    long step;
+    snprintf(path, sizeof path, "%s/spray.pvd", o->out);
+    status = mpm_io_pvd_begin(path, fault);
+    for (step = every; step <= (long)s->tally.step && status >= 0; step += every) {
+        FILE *f;
+        frame_name(name, sizeof name, step);
+        snprintf(frame, sizeof frame, "%s/%s", o->out, name);
+        if (!(f = fopen(frame, "rb"))) continue;
+        fclose(f);
+        status = mpm_io_pvd_add(path, name, (double)(mpm_real)((double)step * (double)s->desc.dt), fault);
+    }
+    return status;
+}
+
+/* Whether a table of impacts is of this spray, with that many rows or more; f then stands at the first. */
+static int holds_impacts(FILE *f, const char *note, int64_t rows)
+{
+    static char line[TEXT_ROOM];
+    size_t length = strlen(note), had;
+    long first;
+    if (!fgets(line, sizeof line, f) || (had = strlen(line)) <= length || strncmp(line, "# mpm.h ", 8)) return 0;
+    if (strncmp(line + had - 1 - length, note, length)) return 0;
+    if (!fgets(line, sizeof line, f) || strcmp(line, IMPACT_COLUMNS "\n") || (first = ftell(f)) < 0) return 0;
+    for (; rows > 0; rows--)
+        if (!fgets(line, sizeof line, f) || line[strlen(line) - 1] != '\n') return 0;
+    return fseek(f, first, SEEK_SET) == 0;
+}
+
+/* The table of impacts before the restart, beside the checkpoint or in --out, or NULL. */
+static FILE *earlier_impacts(const settings *o, const char *note, int64_t rows)
+{
+    const char *slash = strrchr(o->restart, '/');
+    char path[PATH_BYTES];
+    int k;
+    for (k = 0; k < 2; k++) {
+        FILE *f;
+        if (k == 1) snprintf(path, sizeof path, "%s/impacts.csv", o->out);
+        else snprintf(path, sizeof path, "%.*simpacts.csv", slash ? (int)(slash + 1 - o->restart) : 0, o->restart);
+        f = fopen(path, "rb");
+        if (f && holds_impacts(f, note, rows)) return f;
+        if (f) fclose(f);
+    }
+    return NULL;
+}
+
+/* Begins impacts.csv with the rows of the first touches that the checkpoint has counted. */
+static mpm_status begin_impacts(mpm_io_csv *csv, const settings *o, const mpm_spray *s, const char *note,
+                                mpm_fault *fault)
+{
+    const int64_t rows = s->tally.first_hits;
+    FILE *old = rows > 0 ? earlier_impacts(o, note, rows) : NULL;
+    char path[PATH_BYTES], line[1024];
+    mpm_status status;
+    int64_t k;
+    snprintf(path, sizeof path, "%s/impacts.csv", o->out);
+    status = mpm_io_csv_begin(csv, path, IMPACT_COLUMNS, note, fault);
+    for (k = 0; old && k < rows && status >= 0 && fgets(line, sizeof line, old); k++) mpm_io_put(&csv->file, line);
+    if (old) fclose(old);
+    else if (rows > 0)
+        fprintf(stderr, "notice: no impacts.csv of this spray beside the checkpoint: %lld impacts are missing\n",
+                (long long)rows);
+    return status;
+}
+
 /* ---- results ------------------------------------------------------------------------------- */
 
 typedef struct result { const char *key, *text, *unit; double value; } result;
@@ -385,10 +476,11 @@ static void result_row(result *r, int *n, const char *key, const char *text, dou
     r[(*n)++].value = value;
 }
 
-static int results(result *r, const mpm_spray *s, double cpu)
+/* cpu: seconds of the particle-steps since `before` of them, where this run began. */
+static int results(result *r, const mpm_spray *s, int64_t before, double cpu)
 {
     mpm_spray_metrics m;
-    double rate = cpu > 0 ? (double)s->tally.particle_steps / cpu : 0;
+    double rate = cpu > 0 ? (double)(s->tally.particle_steps - before) / cpu : 0;
     int n = 0;
     mpm_spray_measure(s, &m);
     result_row(r, &n, "injected", "injected", (double)m.injected, "");
@@ -432,7 +524,10 @@ static mpm_status write_summary(const char *folder, const result *r, int count, 
             mpm_io_json_number(&j, r[k].key, r[k].value);
     }
     mpm_io_json_open(&j, "options");
-    for (k = 0; k < options; k++) mpm_io_json_string(&j, o[k].name, option_text(&o[k], number));
+    for (k = 0; k < options; k++) {
+        if (!strcmp(o[k].name, "out") || !strcmp(o[k].name, "restart") || !strcmp(o[k].name, "quiet")) continue;
+        mpm_io_json_string(&j, o[k].name, option_text(&o[k], number));
+    }
     mpm_io_json_close(&j);
     return mpm_io_json_end(&j, fault);
 }
@@ -460,7 +555,7 @@ static void show_progress(const mpm_spray *s, long first, long steps, double ela
 static mpm_status run(mpm_spray *s, const settings *o, long steps, spray_columns *c, const char *note, double *cpu,
                       mpm_fault *fault)
 {
-    long first = (long)s->tally.step, every = o->frames > 0 ? (steps + o->frames - 1) / o->frames : steps + 1;
+    const long first = (long)s->tally.step, every = steps_per_frame(o, steps);
     mpm_status status = MPM_OK;
     clock_t begin = clock();
     time_t shown = time(NULL), started = shown;
@@ -470,7 +565,7 @@ static mpm_status run(mpm_spray *s, const settings *o, long steps, spray_columns
         step = (long)s->tally.step;
         if (status >= 0 && (step % every == 0 || (step == steps && o->frames > 0))) {
             *cpu += (double)(clock() - begin) / CLOCKS_PER_SEC;
-            status = write_frame(o->out, s, c, (int)((step + every - 1) / every), note, fault);
+            status = write_frame(o->out, s, c, note, fault);
             begin = clock();
         }
         if (!o->quiet && step % 200 == 0 && time(NULL) != shown) {
@@ -483,7 +578,7 @@ static mpm_status run(mpm_spray *s, const settings *o, long steps, spray_columns
     return status;
 }
 
-/* What made these files: the options as one line. */
+/* What made these files: the options that make the spray, as one line. */
 static void describe_in_words(const option *o, int n, char *note, size_t room)
 {
     size_t at = 0;
@@ -491,7 +586,8 @@ static void describe_in_words(const option *o, int n, char *note, size_t room)
     note[0] = 0;
     for (k = 0; k < n; k++) {
         char number[OPTION_NUMBER];
-        at = mpm_append(note, room, at, k ? " --" : "spray --");
+        if (is_free(o[k].name)) continue;
+        at = mpm_append(note, room, at, at ? " --" : "spray --");
         at = mpm_append(note, room, at, o[k].name);
         at = mpm_append(note, room, at, " ");
         at = mpm_append(note, room, at, option_text(&o[k], number));
@@ -499,11 +595,11 @@ static void describe_in_words(const option *o, int n, char *note, size_t room)
 }
 
 static mpm_status write_all(mpm_spray *s, const settings *o, const option *row, int rows, spray_columns *c,
-                            const char *note, double cpu, mpm_fault *fault)
+                            const char *note, int64_t before, double cpu, mpm_fault *fault)
 {
     char path[PATH_BYTES];
     result r[RESULTS];
-    int n = results(r, s, cpu), k;
+    int n = results(r, s, before, cpu), k;
     mpm_status status = write_summary(o->out, r, n, row, rows, fault);
     if (status >= 0) status = write_pictures(o->out, s, c, note, fault);
     file_in(o->out, "checkpoint.bin", path, sizeof path);
@@ -518,11 +614,10 @@ static mpm_status write_all(mpm_spray *s, const settings *o, const option *row, 
 int main(int argc, char **argv)
 {
     static const char about[] = "Powder from a nozzle to a target: flight, collisions, deposition.";
-    static char note[4096];
+    static char note[TEXT_ROOM];
     settings o = settings_default();
     option row[OPTION_COUNT];
     int rows = option_rows(row, &o), parsed = options_parse(argc, argv, about, row, rows);
-    char path[PATH_BYTES];
     mpm_spray s;
     mpm_spray_desc d;
     mpm_spray_window window;
@@ -530,7 +625,8 @@ int main(int argc, char **argv)
     mpm_fault fault = {MPM_OK, NULL, 0, -1};
     spray_columns columns;
     mpm_status status;
-    long steps;
+    long steps = 0;
+    int64_t before;
     double cpu = 0;
     if (parsed) return parsed > 0 ? 0 : 1;
     if (describe(&o, &d, &window, &steps)) return 1;
@@ -542,13 +638,18 @@ int main(int argc, char **argv)
         fprintf(stderr, "error: --restart %s\n", o.restart);
         return complain(&fault);
     }
-    if (mpm_io_make_directory(o.out, &fault) < 0) return complain(&fault);
-    file_in(o.out, "impacts.csv", path, sizeof path);
-    if (mpm_io_csv_begin(&impacts, path, IMPACT_COLUMNS, note, &fault) < 0) return complain(&fault);
+    before = s.tally.particle_steps;
+    if (s.tally.step > steps) {
+        fprintf(stderr, "error: --restart %s is at step %ld, past the end\n", o.restart, (long)s.tally.step);
+        return 1;
+    }
     if (spray_columns_init(&columns, (size_t)d.capacity)) return fprintf(stderr, "error: no memory\n"), 1;
+    if (mpm_io_make_directory(o.out, &fault) < 0) return complain(&fault);
+    if (o.frames > 0 && begin_series(&o, &s, steps_per_frame(&o, steps), &fault) < 0) return complain(&fault);
+    if (begin_impacts(&impacts, &o, &s, note, &fault) < 0) return complain(&fault);
     status = run(&s, &o, steps, &columns, note, &cpu, &fault);
     if (mpm_io_csv_end(&impacts, status < 0 ? NULL : &fault) < 0 && status >= 0) return complain(&fault);
-    if (status >= 0) status = write_all(&s, &o, row, rows, &columns, note, cpu, &fault);
+    if (status >= 0) status = write_all(&s, &o, row, rows, &columns, note, before, cpu, &fault);
     if (status < 0) complain(&fault);
     spray_columns_free(&columns);
     mpm_spray_free(&s);

@@ -8,13 +8,15 @@
 
 #define FOLDER "build/tests/spray_example"
 
-/* Exit status of build/spray with these options: 0 or not. */
-static int spray(const char *options)
+/* Exit status of build/spray with these options and this folder: 0 or not. */
+static int spray_in(const char *folder, const char *options)
 {
-    char command[512];
-    snprintf(command, sizeof command, "build/spray --quiet --out " FOLDER " %s 2>" FOLDER ".err", options);
+    char command[600];
+    snprintf(command, sizeof command, "build/spray --quiet --out %s %s 2>" FOLDER ".err", folder, options);
     return system(command) != 0;
 }
+
+static int spray(const char *options) { return spray_in(FOLDER, options); }
 
 static long count_lines(const char *path)
 {
@@ -63,6 +65,71 @@ static void refused(const char *options, const char *name)
     free(text);
 }
 
+/* ---- a run that goes on -------------------------------------------------------------------- */
+
+#define WHOLE "build/tests/spray_whole"
+#define HOT "--speed 100 --release 50:100 --stand-off 0.05 --feed 2e5 --alpha inf --frames 8 "
+
+/* The same file of both folders, but for the lines with CPU times. */
+static int same_file(const char *name)
+{
+    char path[2][128], line[2][4096];
+    FILE *f[2];
+    int k, same = 1, more = 1;
+    for (k = 0; k < 2; k++) {
+        snprintf(path[k], sizeof path[k], "%s/%s", k ? WHOLE : FOLDER, name);
+        if (!(f[k] = fopen(path[k], "rb"))) return 0;
+    }
+    while (same && more) {
+        size_t n[2] = {0, 0};
+        for (k = 0; k < 2; k++) {
+            int c = 0;
+            while (n[k] < sizeof line[k] - 1 && c != '\n' && (c = fgetc(f[k])) != EOF) line[k][n[k]++] = (char)c;
+            line[k][n[k]] = 0;
+        }
+        more = n[0] > 0;
+        if (strstr(line[0], "per_second\"") || strstr(line[0], "per_cpu_second\"")) continue;
+        same = n[0] == n[1] && !memcmp(line[0], line[1], n[0]);
+    }
+    fclose(f[0]);
+    fclose(f[1]);
+    return same;
+}
+
+/* One changed byte of the checkpoint, at `part` of its length, is found. */
+static void changed_byte(double part)
+{
+    size_t bytes;
+    char *text = contents(FOLDER "/checkpoint.bin", &bytes);
+    FILE *f = fopen(FOLDER ".bin", "wb");
+    if (!text || !f) return;
+    text[(size_t)(part * (double)(bytes - 1))] ^= 4;
+    fwrite(text, 1, bytes, f);
+    fclose(f);
+    free(text);
+    CHECK_EQUAL("a checkpoint with a changed byte", spray_in(WHOLE, HOT "--time 0.004 --restart " FOLDER ".bin"), 1);
+}
+
+static void test_resumed(void)
+{
+    static const char *const file[] = {"impacts.csv", "spray.pvd", "checkpoint.bin", "summary.json", "plume.png",
+                                       "deposit.png", "spray-000000100.vtu", "spray-000000800.vtu"};
+    int failed = spray_in(WHOLE, HOT "--time 0.004") || spray(HOT "--time 0.002"), k;
+    CHECK_EQUAL("a run to 4 ms, and one to 2 ms", failed, 0);
+    refused(HOT "--time 0.004 --dt 2.5e-6 --restart " FOLDER "/checkpoint.bin", "dt 2.5e-06");
+    refused(HOT "--time 0.004 --seed 7 --restart " FOLDER "/checkpoint.bin", "seed 7");
+    refused(HOT "--time 0.004 --median-radius 20 --restart " FOLDER "/checkpoint.bin", "median-radius 20");
+    for (k = 0; k <= 8; k++) changed_byte(k / 8.0);
+    failed = spray(HOT "--time 0.004 --restart " FOLDER "/checkpoint.bin");
+    CHECK_EQUAL("it goes on in its folder", failed, 0);
+    for (k = 0; k < 8; k++) CHECK_TRUE(file[k], same_file(file[k]));
+    CHECK_TRUE("... with the frames of the first part", count_lines(FOLDER "/spray-000000050.vtu") > 0);
+    refused(HOT "--steps 790 --restart " FOLDER "/checkpoint.bin", "step 800, past the end");
+    failed = spray(HOT "--time 0.0005");
+    CHECK_EQUAL("a run from the start in a used folder", failed, 0);
+    CHECK_EQUAL("... begins its series anew", count_lines(FOLDER "/spray.pvd"), count_lines(WHOLE "/spray.pvd"));
+}
+
 int main(void)
 {
     size_t whole_bytes, parts_bytes;
@@ -88,6 +155,7 @@ int main(void)
                    "--shape 1 --restitution 0.8 --release 10:40 --gamma12 0.7 --theta 1");
     CHECK_EQUAL("the other choices run", failed, 0);
     CHECK_EQUAL("... and with alpha inf every first touch sticks", summary("first_hit_stuck_fraction"), 1);
+    test_resumed();
     refused("--median-radius -3", "median_radius");
     refused("--feed 0 --steps 100", "feed");
     refused("--stand-off -0.1", "stand_off");

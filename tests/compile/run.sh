@@ -92,6 +92,22 @@ printf '#include "mpm.h"\nint other(mpm_world *w);\nint other(mpm_world *w) { re
 $1 -std=c99 -I. -c "$dir/whole.c" -o "$dir/whole.o"
 $1 -std=c99 -I. -DMPM_FLOAT -c "$dir/user.c" -o "$dir/user.o"
 check "double and float units do not link" sh -c "! $1 '$dir/whole.o' '$dir/user.o' -o '$dir/mixed' -lm"
+# Optimisations that take NaN and infinity away are refused; without that part of them every check holds.
+refuses() { # command...: does not compile, and the message says what to do
+    ! "$@" 2>"$dir/refusal" && grep -q 'fno-finite-math-only' "$dir/refusal"
+}
+for cc in gcc clang; do
+    command -v $cc >/dev/null || continue
+    for flag in -ffast-math -Ofast -ffinite-math-only; do
+        check "$cc $flag is refused" refuses $cc -std=c99 -w $flag -fsyntax-only -I. mpm.c
+        check "$cc $flag is overruled" $cc -std=c99 -w $flag -DMPM_FINITE_MATH -fsyntax-only -I. mpm.c
+    done
+    for flag in -O0 '-Ofast -fno-finite-math-only' '-Ofast -fno-finite-math-only -DMPM_FLOAT'; do
+        rm -f "$dir/nan"
+        $cc -std=c99 -w $flag -I. -Itests tests/compile/nan.c -o "$dir/nan" -lm
+        check "$cc $flag: NaN is noticed" "$dir/nan"
+    done
+done
 # The same small impact by every compiler and level: equal but for accumulated round-off.
 agree() { # two files of numbers, line by line
     paste "$1" "$2" | awk '{ d = $1 - $2; if (d < 0) d = -d; s = $1 < 0 ? -$1 : $1; if (d > 1e-7 * s) bad = 1 } END { exit bad || !NR }'

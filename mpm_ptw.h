@@ -376,7 +376,8 @@ MPM_API void mpm_material_wave_speeds(const mpm_material *m, mpm_real density, m
    at its iteration cap (bracketed: the value is usable), or a caller's equation of
    state did; MPM_ERR_ARGUMENT (count < 0, dt <= 0, a material that mpm_material_default never filled, a
    staged return without a user field);
-   MPM_ERR_NAN, MPM_ERR_STATE with the first bad point in block->fault. Blocks of up to 64 points
+   MPM_ERR_NAN, MPM_ERR_STATE with the first bad point in block->fault, also of finite numbers so far out
+   that the laws would make an infinite one of them. Blocks of up to 64 points
    are unchanged on failure; of longer ones, the points before the bad group of 64 are updated.
    Test: 11_update. */
 MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *block);
@@ -1358,6 +1359,7 @@ typedef struct mpm__ptw_lanes {
     mpm_real mises2[MPM__PTW_LANES];      /* square of the trial von Mises stress */
     mpm_real increment[MPM__PTW_LANES];   /* plastic strain increment */
     mpm_real dissipated[MPM__PTW_LANES];  /* plastic work per volume of the increment */
+    mpm_real temperature[MPM__PTW_LANES]; /* of level k+1 */
     mpm_real staged[MPM__PTW_LANES];      /* flow stress that a staged return leaves to the next step */
     int yielding[MPM__PTW_LANES], yield_count;  /* points that were returned */
 } mpm__ptw_lanes;
@@ -1399,6 +1401,46 @@ static inline mpm_status mpm__ptw_diagnose(const mpm_material *m, const mpm_bloc
     if (!(volume > -1) || (gruneisen && !(old + m->gruneisen / 2 * m->density * volume > 0)))
         return mpm_fail(b->fault, MPM_ERR_STATE, "volume increment of point", volume, i);
     return MPM_OK;
+}
+
+/* The one of larger size. */
+static inline mpm_real mpm__ptw_larger(mpm_real a, mpm_real b) { return mpm_fabs(a) < mpm_fabs(b) ? b : a; }
+
+static inline mpm_real mpm__ptw_largest(const mpm_real *const *x, int i)
+{
+    return mpm__ptw_larger(mpm__ptw_larger(x[0][i], x[1][i]), x[2][i]);
+}
+
+/* A point all of whose numbers pass, but of which the laws make one that is not finite: names the number that is
+   furthest from what a material can hold. */
+static inline mpm_status mpm__ptw_blame(const mpm_material *m, const mpm_block *b, int i)
+{
+    static const char *const name[8] = {"strain increment of point", "stress of point", "rotation of point",
+                                        "energy of point", "temperature of point", "plastic strain of point",
+                                        "plastic rate of point", "plastic work of point"};
+    const mpm_real hot = 10000, rho = b->density[i];
+    mpm_real scale[8] = {1, 0, 1, 0, 0, 1, 0, 0}, value[8], most = mpm__ptw_max(m->density / rho, rho / m->density);
+    int j, worst = -1;
+    value[0] = mpm__ptw_larger(mpm__ptw_largest(b->strain, i), mpm__ptw_largest(b->strain + 3, i));
+    value[1] = mpm__ptw_larger(b->stress[0][i], b->stress[1][i]);
+    for (j = 2; j < 6; j++) value[1] = mpm__ptw_larger(value[1], b->stress[j][i]);
+    value[2] = mpm__ptw_largest(b->spin, i);
+    value[3] = b->energy[i];
+    value[4] = b->temperature[i];
+    value[5] = b->plastic_strain[i];
+    value[6] = b->plastic_rate[i];
+    value[7] = b->plastic_work[i];
+    scale[1] = scale[7] = m->young;
+    scale[3] = m->young / m->density;
+    scale[4] = hot;
+    scale[6] = 1 / b->dt;
+    for (j = 0; j < 8; j++)
+        if (mpm_fabs(value[j]) / scale[j] > most) {
+            most = mpm_fabs(value[j]) / scale[j];
+            worst = j;
+        }
+    if (worst < 0) return mpm_fail(b->fault, MPM_ERR_STATE, "density of point", rho, i);
+    return mpm_fail(b->fault, MPM_ERR_STATE, name[worst], value[worst], i);
 }
 
 /* The same conditions, quickly, for a whole group: only a suspect one is diagnosed. x * 0 is 0 for
@@ -1832,6 +1874,7 @@ static inline mpm_status mpm__ptw_yield(const mpm_material *m, const mpm__ptw_sh
     if (!staged) capped = mpm__ptw_search_all(m, h, search, n, per_step);
     for (i = 0, q = search; i < n; i++, q++) {
         mpm_real flow = staged ? mpm__ptw_stage(m, h, b, a, q) : mpm__ptw_returned(q);
+        if (!mpm_finite(q->mises)) return mpm__ptw_blame(m, b, a->first + q->lane);
         if (!mpm_finite(q->d) || !mpm_finite(flow))
             return mpm_fail(b->fault, MPM_ERR_NAN, "flow stress of point", q->d, a->first + q->lane);
         mpm__ptw_take(m, b, a, q, flow, per_step);
@@ -1840,22 +1883,18 @@ static inline mpm_status mpm__ptw_yield(const mpm_material *m, const mpm__ptw_sh
     return capped ? MPM_NOT_CONVERGED : MPM_OK;
 }
 
-/* Plastic strain, its rate, plastic work dW = sigma d (A 4.15) and the heat of it dT = chi sigma d/(rho Cp) (A 3.44),
-   to the block. */
+/* Plastic strain, its rate and plastic work dW = sigma d (A 4.15), to the block. */
 static inline void mpm__ptw_commit(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a)
 {
     mpm_real per_step = 1 / b->dt;
     int i, y;
     for (i = 0; i < a->count; i++) b->plastic_rate[a->first + i] = 0;
     for (y = 0; y < a->yield_count; y++) {
-        int k = a->first + a->yielding[y];
-        mpm_real d = a->increment[a->yielding[y]], work = a->dissipated[a->yielding[y]];
-        b->plastic_rate[k] = d * per_step;
-        b->plastic_strain[k] += d;
-        b->plastic_work[k] += work;
-        if (m->mapping == MPM_RETURN_STAGED) b->user[0][k] = a->staged[a->yielding[y]];
-        if (m->heat_fraction > 0)
-            b->temperature[k] += m->heat_fraction * work / (b->density[k] * m->specific_heat);
+        int lane = a->yielding[y], k = a->first + lane;
+        b->plastic_rate[k] = a->increment[lane] * per_step;
+        b->plastic_strain[k] += a->increment[lane];
+        b->plastic_work[k] += a->dissipated[lane];
+        if (m->mapping == MPM_RETURN_STAGED) b->user[0][k] = a->staged[lane];
     }
 }
 
@@ -1959,26 +1998,63 @@ static inline mpm_status mpm__ptw_pressure(const mpm_material *m, const mpm_bloc
 
 /* Temperature along the isentrope of Gamma rho = Gamma0 rho0, T exp(Gamma0 V/V0) = constant, and the heat of the bulk
    viscosity, dT = -q dV/(V0 rho0 Cp). */
-static inline void mpm__ptw_heat_volume(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a)
+static inline void mpm__ptw_heat_volume(const mpm_material *m, const mpm_block *b, mpm__ptw_lanes *a)
 {
     int i, k = a->first;
     for (i = 0; i < a->count; i++) {
         mpm_real dv = m->density / b->density[k + i] * a->volume[i] / (1 + a->volume[i]);
-        b->temperature[k + i] += b->temperature[k + i] * mpm_expm1(-a->thermal[i] * dv);
-        b->temperature[k + i] -= a->viscous[i] * dv / (m->density * m->specific_heat);
+        a->temperature[i] += a->temperature[i] * mpm_expm1(-a->thermal[i] * dv);
+        a->temperature[i] -= a->viscous[i] * dv / (m->density * m->specific_heat);
     }
 }
 
-/* Energy and full stress, sigma = s - (p + q) I, to the block. */
-static inline void mpm__ptw_close(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a)
+/* Temperature of level k+1 with the heat of plastic work, dT = chi sigma d/(rho Cp) (A 3.44). Touches only *a. */
+static inline void mpm__ptw_heat(const mpm_material *m, const mpm_block *b, mpm__ptw_lanes *a)
+{
+    int i, y;
+    for (i = 0; i < a->count; i++) a->temperature[i] = b->temperature[a->first + i];
+    for (y = 0; m->heat_fraction > 0 && y < a->yield_count; y++) {
+        mpm_real work = a->dissipated[a->yielding[y]];
+        i = a->yielding[y];
+        a->temperature[i] += m->heat_fraction * work / (b->density[a->first + i] * m->specific_heat);
+    }
+    if (m->compression_heating) mpm__ptw_heat_volume(m, b, a);
+}
+
+/* Whether all that would go to the block is finite; else the fault. x * 0 is 0 for finite numbers only. */
+static inline mpm_status mpm__ptw_settled(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a)
+{
+    mpm_real per_step = 1 / b->dt, wrong[MPM__PTW_LANES];
+    int i, y, k = a->first, bad = 0;
+    for (i = 0; i < a->count; i++) {
+        mpm_real t = (a->trial[0][i] + a->mean[i]) * 0 + (a->trial[1][i] + a->mean[i]) * 0 +
+                     (a->trial[2][i] + a->mean[i]) * 0;
+        t += a->trial[3][i] * 0 + a->trial[4][i] * 0 + a->trial[5][i] * 0 + a->energy[i] * 0 + a->temperature[i] * 0;
+        bad |= !(t == 0);
+        wrong[i] = t;
+    }
+    for (i = 0; bad && i < a->count; i++)
+        if (!(wrong[i] == 0)) return mpm__ptw_blame(m, b, k + i);
+    for (y = 0; y < a->yield_count; y++) {
+        mpm_real d = a->increment[a->yielding[y]], work = a->dissipated[a->yielding[y]];
+        i = k + a->yielding[y];
+        if (!mpm_finite(d * per_step) || !mpm_finite(b->plastic_strain[i] + d) ||
+            !mpm_finite(b->plastic_work[i] + work))
+            return mpm__ptw_blame(m, b, i);
+    }
+    return MPM_OK;
+}
+
+/* Energy, temperature and full stress, sigma = s - (p + q) I, to the block. */
+static inline void mpm__ptw_close(const mpm_block *b, const mpm__ptw_lanes *a)
 {
     int i, j, k = a->first;
     for (i = 0; i < a->count; i++) b->energy[k + i] = a->energy[i];
+    for (i = 0; i < a->count; i++) b->temperature[k + i] = a->temperature[i];
     for (j = 0; j < 3; j++)
         for (i = 0; i < a->count; i++) b->stress[j][k + i] = a->trial[j][i] + a->mean[i];
     for (j = 3; j < 6; j++)
         for (i = 0; i < a->count; i++) b->stress[j][k + i] = a->trial[j][i];
-    if (m->compression_heating) mpm__ptw_heat_volume(m, b, a);
 }
 
 /* One group of points. A failure leaves the block as it was: only the last two touch it. */
@@ -1997,8 +2073,10 @@ static inline mpm_status mpm__ptw_update(const mpm_material *m, const mpm__ptw_s
     if (yield < 0) return yield;
     pressure = mpm__ptw_pressure(m, b, a);
     if (pressure < 0) return pressure;
+    mpm__ptw_heat(m, b, a);
+    MPM__PTW_REQUIRE(mpm__ptw_settled(m, b, a));
     mpm__ptw_commit(m, b, a);
-    mpm__ptw_close(m, b, a);
+    mpm__ptw_close(b, a);
     if (yield > 0 || pressure > 0) return MPM_NOT_CONVERGED;
     return bounded ? MPM_CLAMPED : MPM_OK;
 }

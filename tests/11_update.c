@@ -3,6 +3,7 @@
 #include "mpm_ptw.h"
 #include "check.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -625,6 +626,83 @@ static void test_units(void)
     }
 }
 
+static int all_finite(const points *p, int i)
+{
+    double sum = 0;
+    int j;
+    for (j = 0; j < 6; j++) sum += (double)p->stress[j][i] * 0;
+    return sum + (double)p->energy[i] * 0 + (double)p->temperature[i] * 0 + (double)p->plastic_strain[i] * 0 +
+               (double)p->plastic_rate[i] * 0 + (double)p->plastic_work[i] * 0 == 0;
+}
+
+/* One number of a point that flows, set to a size: finite numbers come out, or a status that names a field and the
+   block as it was. Returns whether so; *refused counts the latter. */
+static int holds(const mpm_material *m, int field, mpm_real size, int *refused)
+{
+    mpm_fault f = {MPM_OK, "", 0, 0};
+    points p, before;
+    mpm_real *fields[11];
+    mpm_status status;
+    reset(&p, m);
+    fields[0] = p.strain[4]; fields[1] = p.spin[1]; fields[2] = p.density; fields[3] = p.stress[5];
+    fields[4] = p.energy; fields[5] = p.temperature; fields[6] = p.plastic_strain;
+    fields[7] = p.plastic_rate; fields[8] = p.plastic_work; fields[9] = p.strain[0]; fields[10] = p.stress[0];
+    strain(&p, 1, 1e-3, -2e-3, 0, 0, 0, 4e-2);
+    fields[field][1] = size;
+    before = p;
+    status = update(&p, m, 0, 3, 1e-9, &f);
+    if (status >= 0) return all_finite(&p, 0) && all_finite(&p, 1) && all_finite(&p, 2);
+    ++*refused;
+    return *f.field && f.index == 1 && !memcmp(&p, &before, sizeof p);
+}
+
+/* Numbers of any finite size, in every field, by every law and return. */
+static void test_extremes(void)
+{
+    static const char *const models[] = {"elastic", "linear", "jc", "scg", "ptw"};
+    const mpm_real big = sizeof(mpm_real) == 8 ? (mpm_real)DBL_MAX : (mpm_real)FLT_MAX;
+    const mpm_real tiny = sizeof(mpm_real) == 8 ? (mpm_real)DBL_MIN : (mpm_real)FLT_MIN;
+    mpm_real sizes[10];
+    int n, i, j, k, wrong = 0, refused = 0, laws = 0;
+    mpm_units si = mpm_units_si();
+    sizes[0] = big;
+    sizes[1] = big / 2;
+    sizes[2] = tiny;
+    sizes[3] = tiny * 3;
+    sizes[4] = (mpm_real)sqrt((double)big);
+    sizes[5] = 1 / sizes[4];
+    for (k = 6; k < 10; k++) sizes[k] = -sizes[k - 6];
+    for (n = 0; n < mpm_material_preset_count(); n++)
+        for (i = 0; i < 10; i++) {
+            mpm_material m = preset(mpm_material_preset_name(n), "", si);
+            if (mpm_material_model(&m, models[i / 2], NULL) != MPM_OK) continue;
+            m.mapping = i % 2 ? MPM_RETURN_STAGED : MPM_RETURN_CONSISTENT;
+            m.compression_heating = i % 2;
+            laws++;
+            for (j = 0; j < 11; j++)
+                for (k = 0; k < 10; k++) wrong += !holds(&m, j, sizes[k], &refused);
+        }
+    CHECK_EQUAL("extreme numbers: none comes out infinite, no block half done", wrong, 0);
+    CHECK_TRUE("... many refused, by many laws", refused > 1000 && laws > 40);
+}
+
+/* The number at fault is the one that is named. */
+static void test_extreme_names(void)
+{
+    mpm_material m = preset("al", "ptw", mpm_units_si());
+    mpm_fault f = {MPM_OK, "", 0, 0};
+    points p;
+    reset(&p, &m);
+    p.density[2] = sizeof(mpm_real) == 8 ? (mpm_real)DBL_MIN : (mpm_real)FLT_MIN;
+    p.strain[0][2] = (mpm_real)1e-3;
+    CHECK_EQUAL("a density far too small", update(&p, &m, 0, 3, 1e-9, &f), MPM_ERR_STATE);
+    CHECK_TRUE("... named, with the index", !strcmp(f.field, "density of point") && f.index == 2);
+    reset(&p, &m);
+    p.strain[5][2] = (sizeof(mpm_real) == 8 ? (mpm_real)DBL_MAX : (mpm_real)FLT_MAX) / 4;
+    CHECK_EQUAL("a strain far too large", update(&p, &m, 0, 3, 1e-9, &f), MPM_ERR_STATE);
+    CHECK_TRUE("... named, with the index", !strcmp(f.field, "strain increment of point") && f.index == 2);
+}
+
 static void test_faults(void)
 {
     mpm_material m = preset("al", "ptw", mpm_units_si());
@@ -985,6 +1063,8 @@ int main(void)
     test_viscosity();
     test_units();
     test_faults();
+    test_extremes();
+    test_extreme_names();
     test_user_strength();
     test_zerilli();
     test_user_eos();

@@ -29,37 +29,25 @@ try() {
 
 # ---- failures of the machine
 try "allocations fail" cc memory.log sh -c "cc $flags -O1 tests/hard/memory.c -o $dir/memory -lm && $dir/memory"
-[ -x build/spray ] || make build/spray >/dev/null 2>&1
-[ -x build/impact ] || make build/impact >/dev/null 2>&1
+impact=$dir/impact
+cc $flags -O1 examples/impact.c -o $impact -lm || exit 1
 if [ -w /dev/full ]; then
-    if build/impact --help >/dev/full 2>/dev/null; then line "standard output full" "found 1: impact --help exits 0"
+    if $impact --help >/dev/full 2>/dev/null; then line "standard output full" "found 1: impact --help exits 0"
     else line "standard output full" ok; fi
 else line "standard output full" "skip: no /dev/full"; fi
 full=$dir/full
 mkdir -p $full
 if [ "$(id -u)" = 0 ] && mount -t tmpfs -o size=64k tmpfs $full 2>/dev/null; then
-    if build/impact --quiet --time 1 --spacing 0.75 --frames 2 --out $full >/dev/null 2>&1; then line "disk full" "found 1: impact exits 0"
+    if $impact --quiet --time 1 --spacing 0.75 --frames 2 --out $full >/dev/null 2>&1; then line "disk full" "found 1: impact exits 0"
     elif [ -n "$(find $full -name '*.part*')" ]; then line "disk full" "found 1: parts of files stay"
     else line "disk full" ok; fi
     umount $full
 else line "disk full" "skip: no right to mount a small disk"; fi
 : >$dir/file
-if build/impact --quiet --time 1 --spacing 0.75 --frames 0 --out $dir/file/below >/dev/null 2>&1; then
+if $impact --quiet --time 1 --spacing 0.75 --frames 0 --out $dir/file/below >/dev/null 2>&1; then
     line "folder that cannot be made" "found 1: impact exits 0"
 else line "folder that cannot be made" ok; fi
 try "kill -9, then go on" cc kill.log sh tests/hard/kill.sh "$kills"
-
-# ---- sanitizers: the tests of the step, of files, pictures and sprays
-san() { # name, tool, options
-    try "$1" clang "$2.log" sh -c "
-        for t in 21_world 40_io 51_spray_input; do
-            clang $flags -O1 -g $3 tests/\$t.c -o $dir/$2_\$t -lm && $dir/$2_\$t >$dir/$2_\$t.log || { cat $dir/$2_\$t.log; exit 1; }
-        done"
-}
-san "address, undefined, casts" asan "-fsanitize=address,undefined,float-cast-overflow,implicit-integer-sign-change -fno-sanitize-recover=all"
-san "uninitialised memory" msan "-fsanitize=memory -fno-sanitize-recover=all"
-try "two threads, one material" clang tsan.log sh -c "clang $flags -O1 -g -fsanitize=thread tests/hard/threads.c -o $dir/threads -lm -lpthread && $dir/threads"
-try "valgrind" valgrind valgrind.log sh -c "cc $flags -O1 -g tests/21_world.c -o $dir/val -lm && valgrind -q --error-exitcode=9 --leak-check=full $dir/val"
 
 # ---- readers of the source
 for h in mpm*.h; do printf '#define MPM_IMPLEMENTATION\n#include "%s"\n' "$h" >$dir/only_${h%.h}.c; done
@@ -79,6 +67,18 @@ for c in gcc clang tcc musl-gcc "gcc -m32" x86_64-w64-mingw32-gcc s390x-linux-gn
     fi
     try "compiler $c" "$tool" "compiler_$name.log" sh -c "$c $opts -DMPM_NO_INLINE -c mpm.c -o $dir/$name.o && $c $opts -DMPM_NO_INLINE -DMPM_FLOAT -c mpm.c -o $dir/$name.o"
 done
+
+# ---- sanitizers: the tests of the step, of files, pictures and sprays
+san() { # name, tool, options
+    try "$1" clang "$2.log" sh -c "
+        for t in 21_world 40_io 51_spray_input; do
+            clang $flags -O1 -g $3 tests/\$t.c -o $dir/$2_\$t -lm && $dir/$2_\$t >$dir/$2_\$t.log || { cat $dir/$2_\$t.log; exit 1; }
+        done"
+}
+san "address, undefined, casts" asan "-fsanitize=address,undefined,float-cast-overflow,implicit-integer-sign-change -fno-sanitize-recover=all"
+san "uninitialised memory" msan "-fsanitize=memory -fno-sanitize-recover=all"
+try "two threads, one material" clang tsan.log sh -c "clang $flags -O1 -g -fsanitize=thread tests/hard/threads.c -o $dir/threads -lm -lpthread && $dir/threads"
+try "valgrind" valgrind valgrind.log sh -c "cc $flags -O1 -g tests/21_world.c -o $dir/val -lm && valgrind -q --error-exitcode=9 --leak-check=full $dir/val"
 
 {
     echo "# Quality"

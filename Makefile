@@ -109,6 +109,18 @@ BUDGET ?= full
 spray-study: build/spray_study ## source B's results again: a quarter of an hour, resumable; BUDGET=quick: less
 	build/spray_study --budget $(BUDGET)
 
+# fuzz needs clang with libFuzzer; hard takes what it finds of tools and skips the others.
+SECONDS ?= 20
+fuzz: ## random inputs for everything that reads or describes: SECONDS=20 for each target of tests/fuzz
+	@CC="$(CC)" sh tests/fuzz/run.sh $(SECONDS) $(JOBS)
+
+KILLS ?= 20
+hard: ## memory and disks that fail, kill -9, sanitizers, analysers, compilers: writes docs/quality.md; KILLS=20
+	@sh tests/hard/run.sh $(KILLS)
+
+coverage: ## lines and branches of the headers that the test programs reach (a quarter of an hour)
+	@sh tests/coverage.sh "$(wildcard tests/[0-9]*.c)"
+
 bench: $(BENCH) ## speed, as ratios measured in one run
 	@for b in $(BENCH); do $$b || exit 1; done
 
@@ -151,4 +163,4 @@ dist: build/mpm_all.h ## a release: build/mpm-VERSION.tar.gz, and build/mpm_all.
 clean: ## removes build/
 	rm -rf build
 
-.PHONY: all help run test verify impacts reproduction spray-study bench bench-against footprint figures install uninstall dist clean
+.PHONY: all help run test fuzz hard coverage verify impacts reproduction spray-study bench bench-against footprint figures install uninstall dist clean

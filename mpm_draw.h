@@ -345,6 +345,7 @@ static inline void mpm__draw_general(char text[64], double value, int digits)
 MPM_API size_t mpm_draw_number(char *buffer, size_t n, double value, int digits)
 {
     char text[64];
+    digits = digits < 1 ? 1 : digits > 15 ? 15 : digits;
     if (value - value != 0) strcpy(text, value != value ? "nan" : value > 0 ? "inf" : "-inf");
     else if (fabs(value) > 1e-290) mpm__draw_general(text, value, digits);
     else strcpy(text, "0");
@@ -741,6 +742,7 @@ MPM_API mpm_draw_color mpm_draw_map_color(mpm_draw_map map, double t)
     if (t != t) return 0x9aa0a6;
     t = 10 * (t < 0 ? 0 : t > 1 ? 1 : t);
     k = t < 10 ? (int)t : 9;
+    if ((unsigned)map >= 3) map = MPM_DRAW_DEEP;
     return mpm__draw_blend(points[map][k], points[map][k + 1], t - k);
 }
 
@@ -818,6 +820,12 @@ static inline int mpm__draw_log_ticks(double low, double high, mpm_draw_tick *ti
     return n;
 }
 
+/* How many steps an axis has room for; a canvas unit that is no size gives none. */
+static inline int mpm__draw_want(double room)
+{
+    return room > 0 ? room < MPM_DRAW_TICKS ? (int)room : MPM_DRAW_TICKS : 0;
+}
+
 MPM_API int mpm_draw_ticks(double low, double high, int is_log, int want, mpm_draw_tick ticks[MPM_DRAW_TICKS])
 {
     double step = mpm_draw_nice((high - low) / (want > 2 ? want : 2)), k;
@@ -825,6 +833,7 @@ MPM_API int mpm_draw_ticks(double low, double high, int is_log, int want, mpm_dr
     int n = 0;
     if (!(low < high && high - low < 1e300)) return 0; /* NaN too */
     if (is_log) return low > -400 && high < 400 ? mpm__draw_log_ticks(low, high, ticks) : 0;
+    if (!(step > 0)) return 0; /* the range is smaller than any number's last digit */
     if (step * (want > 2 ? want : 2) < 0.999 * (high - low)) step = mpm_draw_nice(2.51 * step);
     for (k = ceil(low / step - 1e-6); k * step <= high + 1e-6 * step && n < MPM_DRAW_TICKS; k++) {
         ticks[n].at = k * step;
@@ -887,12 +896,14 @@ static inline void mpm__draw_frame(mpm_draw_canvas *c, const mpm__draw_axes *a)
 
 static inline int mpm__draw_ticks_x(const mpm_draw_canvas *c, const mpm__draw_axes *a, mpm_draw_tick *ticks)
 {
-    return mpm_draw_ticks(a->low[0], a->high[0], a->log[0], (int)((a->right - a->left) / (62 * c->unit)), ticks);
+    return mpm_draw_ticks(a->low[0], a->high[0], a->log[0],
+                          mpm__draw_want((a->right - a->left) / (62 * c->unit)), ticks);
 }
 
 static inline int mpm__draw_ticks_y(const mpm_draw_canvas *c, const mpm__draw_axes *a, mpm_draw_tick *ticks)
 {
-    return mpm_draw_ticks(a->low[1], a->high[1], a->log[1], (int)((a->bottom - a->top) / (42 * c->unit)), ticks);
+    return mpm_draw_ticks(a->low[1], a->high[1], a->log[1],
+                          mpm__draw_want((a->bottom - a->top) / (42 * c->unit)), ticks);
 }
 
 /* Light lines behind the data, at the named ticks. */
@@ -1026,7 +1037,7 @@ static inline void mpm__draw_bar(mpm_draw_canvas *c, mpm_draw_rect where, mpm_dr
     double u = c->unit, size = MPM__DRAW_NUMBER * u, thick = floor(10 * u + 0.5), x, tip = 0.8 * thick;
     double left = floor(where.x) + (below ? tip : 0);
     double right = floor(where.x + where.width) - (above ? tip : 0);
-    int i, n = mpm_draw_ticks(low, high, 0, (int)((right - left) / (54 * u)), ticks);
+    int i, n = mpm_draw_ticks(low, high, 0, mpm__draw_want((right - left) / (54 * u)), ticks);
     if (!(right > left)) return;
     for (x = left; x < right; x++)
         mpm_draw_rectangle(c, x, where.y, 1, thick, mpm_draw_map_color(map, (x + 0.5 - left) / (right - left)));
@@ -1057,6 +1068,8 @@ MPM_API void mpm_draw_color_bar(mpm_draw_canvas *c, mpm_draw_rect where, mpm_dra
 MPM_API mpm_draw_rect mpm_draw_tile(const mpm_draw_canvas *c, int columns, int rows, int number)
 {
     mpm_draw_rect r;
+    if (columns < 1) columns = 1;
+    if (rows < 1) rows = 1;
     r.width = (double)c->width / columns;
     r.height = (double)c->height / rows;
     r.x = r.width * (number % columns);
@@ -1399,8 +1412,8 @@ static inline mpm_status mpm__draw_cut_bodies(mpm_draw_canvas *c, const mpm__dra
     size_t i, pixels;
     float *memory;
     memset(&p, 0, sizeof p);
-    p.width = MPM__DRAW_FINE * (int)(a->right - a->left + 0.5);
-    p.height = MPM__DRAW_FINE * (int)(a->bottom - a->top + 0.5);
+    p.width = MPM__DRAW_FINE * mpm__draw_whole(a->right - a->left, 1, 16384);
+    p.height = MPM__DRAW_FINE * mpm__draw_whole(a->bottom - a->top, 1, 16384);
     pixels = (size_t)p.width * (size_t)p.height;
     memory = (float *)MPM_MALLOC(pixels * 7 * sizeof(float));
     if (!memory) return MPM_ERR_MEMORY;

@@ -1,0 +1,98 @@
+/* memory - every allocation fails in turn: setting up, bodies, clouds, rules, user fields, growth during steps, a
+   picture, its file, a spray. A failure is a status, what was there goes on, nothing is lost. One line at the end.
+   SPDX-License-Identifier: MIT */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static long count, failing; /* allocations of this attempt; which of them fails */
+static void *hard_malloc(size_t n) { return ++count == failing ? NULL : malloc(n); }
+#define MPM_MALLOC(n) hard_malloc(n)
+#define MPM_FREE(p) free(p)
+#define MPM_IMPLEMENTATION
+#include "mpm.h"
+#include "mpm_draw.h"
+#include "mpm_io.h"
+#include "mpm_spray.h"
+
+static long wrong;
+
+static void want(int ok, const char *what)
+{
+    if (ok) return;
+    wrong++;
+    printf("memory: wrong at allocation %ld: %s\n", failing, what);
+}
+
+/* A status from something that allocates: good, or MPM_ERR_MEMORY; what failed is tried once more. */
+#define TRY(call) do { \
+    const mpm_status first = (call); \
+    if (first < 0) { \
+        want(first == MPM_ERR_MEMORY, #call); \
+        want((call) >= 0, "again: " #call); \
+    } } while (0)
+
+static void world(void)
+{
+    mpm_desc d = mpm_desc_default();
+    mpm_body_desc b = mpm_body_desc_default();
+    mpm_contact rule = d.contact;
+    mpm_real x[2] = {MPM_R(1.2), MPM_R(1.4)};
+    mpm_draw_canvas c;
+    mpm_draw_cut_desc cut;
+    mpm_fault fault;
+    mpm_cloud cloud;
+    mpm_world w;
+    int i, field;
+    d.cell = 1;
+    d.cells[0] = d.cells[1] = d.cells[2] = 16;
+    b.spacing = MPM_R(0.5);
+    b.density = 1;
+    TRY(mpm_init(&w, &d, NULL, 0));
+    b.shape = mpm_sphere(4, 4, 10, 2);
+    b.velocity[2] = -1;
+    TRY(mpm_body_add(&w, &b));
+    b.shape = mpm_box(2, 2, 4, 9, 9, 7);
+    TRY(mpm_body_add(&w, &b));
+    memset(&cloud, 0, sizeof cloud);
+    cloud.count = 2;
+    cloud.x[0] = cloud.x[1] = cloud.x[2] = x;
+    TRY(mpm_body_add_points(&w, &b, &cloud));
+    TRY(mpm_points_add(&w, 2, &cloud));
+    rule.normal = MPM_NORMAL_LOGISTIC;
+    TRY(mpm_contact_set(&w, 0, 1, &rule));
+    field = mpm_field_take(&w, "mine");
+    if (field < 0) field = mpm_field_take(&w, "mine");
+    want(field >= 0, "mpm_field_take, twice");
+    for (i = 0; i < w.points.count; i++) w.points.v[i % 3][i] += (mpm_real)(i % 7) - 3; /* apart: more and more nodes */
+    for (i = 0; i < 20; i++) TRY(mpm_step(&w, MPM_R(0.02)));
+    cut = mpm_draw_cut_of(&w, NULL);
+    cut.at = 4;
+    TRY(mpm_draw_cuts(&c, &cut, 1, 1, 120, &fault));
+    TRY(mpm_io_png("build/hard/memory.png", c.rgb, c.width, c.height, "memory", &fault));
+    mpm_draw_canvas_free(&c);
+    mpm_free(&w);
+}
+
+static void spray(void)
+{
+    mpm_spray_desc d = mpm_spray_desc_default();
+    mpm_spray s;
+    d.capacity = 100;
+    d.batch = 10;
+    TRY(mpm_spray_init(&s, &d, NULL, 0));
+    want(mpm_spray_step(&s) >= 0, "mpm_spray_step");
+    mpm_spray_free(&s);
+}
+
+int main(void)
+{
+    for (failing = 1;; failing++) {
+        count = 0;
+        world();
+        spray();
+        if (count < failing) break;
+    }
+    printf("memory: %ld allocations failed in turn, %ld wrong\n", failing - 1, wrong);
+    return wrong > 0;
+}

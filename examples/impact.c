@@ -178,7 +178,7 @@ static int run(impact *s, const impact_case *c, output *o)
     return 1;
 }
 
-int main(int argc, char **argv)
+static int carry_out(int argc, char **argv)
 {
     impact_case c = impact_case_default();
     output o = output_of("build/impact-out", "impact", "um", "ns", 1);
@@ -203,3 +203,5 @@ int main(int argc, char **argv)
     mpm_free(&s.world);
     return ok ? 0 : 1;
 }
+
+int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

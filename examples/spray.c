@@ -515,7 +515,7 @@ static mpm_status write_all(mpm_spray *s, const settings *o, const option *row, 
     return status;
 }
 
-int main(int argc, char **argv)
+static int carry_out(int argc, char **argv)
 {
     static const char about[] = "Powder from a nozzle to a target: flight, collisions, deposition.";
     static char note[4096];
@@ -554,3 +554,5 @@ int main(int argc, char **argv)
     mpm_spray_free(&s);
     return status < 0;
 }
+
+int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

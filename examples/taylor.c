@@ -167,7 +167,7 @@ static int options_of(taylor_case *c, option *o)
     return n;
 }
 
-int main(int argc, char **argv)
+static int carry_out(int argc, char **argv)
 {
     taylor_case c = taylor_case_default();
     output o = output_of("build/taylor-out", "taylor", "mm", "us", 1e-3);
@@ -186,3 +186,5 @@ int main(int argc, char **argv)
     mpm_free(&s.world);
     return ok ? 0 : 1;
 }
+
+int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

@@ -904,12 +904,14 @@ static inline int mpm__draw_steps(double room) { return mpm__draw_whole(floor(ro
 
 static inline int mpm__draw_ticks_x(const mpm_draw_canvas *c, const mpm__draw_axes *a, mpm_draw_tick *ticks)
 {
-    return mpm_draw_ticks(a->low[0], a->high[0], a->log[0], mpm__draw_steps((a->right - a->left) / (62 * c->unit)), ticks);
+    const int want = mpm__draw_steps((a->right - a->left) / (62 * c->unit));
+    return mpm_draw_ticks(a->low[0], a->high[0], a->log[0], want, ticks);
 }
 
 static inline int mpm__draw_ticks_y(const mpm_draw_canvas *c, const mpm__draw_axes *a, mpm_draw_tick *ticks)
 {
-    return mpm_draw_ticks(a->low[1], a->high[1], a->log[1], mpm__draw_steps((a->bottom - a->top) / (42 * c->unit)), ticks);
+    const int want = mpm__draw_steps((a->bottom - a->top) / (42 * c->unit));
+    return mpm_draw_ticks(a->low[1], a->high[1], a->log[1], want, ticks);
 }
 
 /* Light lines behind the data, at the named ticks. */

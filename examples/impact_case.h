@@ -81,7 +81,7 @@ typedef struct impact {
     mpm_material material[2]; /* of particle and substrate */
     mpm_bond bond;
     mpm_real dt;          /* us */
-    long steps;
+    int64_t steps;
     mpm_totals start;
 } impact;
 
@@ -288,7 +288,7 @@ static inline int impact_build(impact *s, const impact_case *c, mpm_desc d, cons
     }
     s->bond = impact_bond(c);
     s->dt = (mpm_real)(c->dt_factor * 0.5) / (particle.wave_p > substrate.wave_p ? particle.wave_p : substrate.wave_p);
-    s->steps = (long)ceil(c->time * 1e-3 / (double)s->dt - 1e-9);
+    s->steps = (int64_t)ceil(c->time * 1e-3 / (double)s->dt - 1e-9);
     s->start = mpm_body_totals(&s->world, -1);
     return 1;
 }

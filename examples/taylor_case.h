@@ -56,7 +56,7 @@ typedef struct taylor {
     int first_radius, first_height;       /* user fields of the points: where they began */
     double spacing, cell, radius, length; /* as used, mm: multiples of the spacing */
     mpm_real dt;                          /* ms */
-    long steps;
+    int64_t steps;
     mpm_totals start;
 } taylor;
 
@@ -173,7 +173,7 @@ static inline int taylor_begin(taylor *s, const taylor_case *c, char *message, s
         return 0;
     }
     s->dt = mpm_time_step(&s->world, (mpm_real)c->dt_factor);
-    s->steps = (long)ceil(c->time * 1e-3 / (double)s->dt - 1e-9);
+    s->steps = (int64_t)ceil(c->time * 1e-3 / (double)s->dt - 1e-9);
     s->start = mpm_body_totals(&s->world, -1);
     return 1;
 }

@@ -154,7 +154,7 @@ typedef struct mpm_draw_tick {
 /* The 1, 2 or 5 times a power of ten next below or at `value` > 0. Test: 41_draw "ticks". */
 MPM_API double mpm_draw_nice(double value);
 /* Ticks at nice values between low and high (exponents, if is_log), with at most `want` steps (but two).
-   Returns how many. Test: 41_draw "ticks". */
+   Their texts differ from each other. Returns how many. Test: 41_draw "ticks". */
 MPM_API int mpm_draw_ticks(double low, double high, int is_log, int want, mpm_draw_tick ticks[MPM_DRAW_TICKS]);
 
 /* ---- figures ------------------------------------------------------------------------------- */
@@ -162,7 +162,8 @@ MPM_API int mpm_draw_ticks(double low, double high, int is_log, int want, mpm_dr
 /* Figures are drawn into a part of a canvas, so that any of them can share one picture. */
 typedef struct mpm_draw_rect { double x, y, width, height; } mpm_draw_rect;
 
-/* Tile `number` (row by row from the top left) of a canvas split into columns x rows. Test: 41_draw "cut". */
+/* Tile `number` (row by row from the top left) of a canvas split into columns x rows; all zero where these are below
+   1, and then no figure can be drawn. Test: 41_draw "cut", "odd sizes". */
 MPM_API mpm_draw_rect mpm_draw_tile(const mpm_draw_canvas *c, int columns, int rows, int number);
 
 /* A horizontal colour bar over the width of `where`, with ticks and its label below. Test: 41_draw "colour bar". */
@@ -739,7 +740,7 @@ MPM_API mpm_draw_color mpm_draw_map_color(mpm_draw_map map, double t)
         {0x2c274d, 0x542b67, 0x882375, 0xbb1263, 0xde2843, 0xf14e38, 0xff702c, 0xff963a, 0xffb851, 0xffd580, 0xfff0c2},
         {0x055987, 0x0177b3, 0x3a95d5, 0x83b2e0, 0xb8cfea, 0xf4eceb, 0xecc4be, 0xe09c93, 0xd1756a, 0xbe4c44, 0xa02626}};
     int k;
-    if (t != t) return 0x9aa0a6;
+    if (t != t || (unsigned)map > 2) return 0x9aa0a6;
     t = 10 * (t < 0 ? 0 : t > 1 ? 1 : t);
     k = t < 10 ? (int)t : 9;
     if ((unsigned)map >= 3) map = MPM_DRAW_DEEP;
@@ -790,21 +791,34 @@ MPM_API double mpm_draw_nice(double value)
     return power * (digit > 5 - 1e-9 ? 5 : digit > 2 - 1e-9 ? 2 : 1);
 }
 
-/* A tick's number: plain where that is short, with the decimals of the step. */
+/* A tick's number: plain where that is short, with the decimals of the step; else with so many digits that it
+   differs from its neighbours. */
 static inline void mpm__draw_tick_number(char text[32], double value, double step, double largest)
 {
-    int decimals = (int)-floor(log10(step) + 1e-9);
+    const int place = (int)floor(log10(step) + 1e-9), decimals = place < 0 ? -place : 0;
+    int digits;
     if (fabs(value) < 1e-9 * step) value = 0;
-    if (largest >= 1e5 || step < 1e-4) {
-        mpm_draw_number(text, 32, value, 4);
+    if (largest < 1e5 && step >= 1e-4) {
+        mpm__draw_fixed(text, value, decimals);
         return;
     }
-    mpm__draw_fixed(text, value, decimals < 0 ? 0 : decimals);
+    digits = (int)floor(log10(largest)) - place + 1;
+    mpm_draw_number(text, 32, value, digits < 4 ? 4 : digits > 15 ? 15 : digits);
+}
+
+/* Ticks closer than a number has digits keep the first of equal texts. */
+static inline void mpm__draw_tick_differs(mpm_draw_tick *ticks, int n)
+{
+    int k = n - 1;
+    while (k >= 0 && !ticks[k].text[0]) k--;
+    if (k >= 0 && strcmp(ticks[k].text, ticks[n].text) == 0) ticks[n].text[0] = 0;
 }
 
 static inline int mpm__draw_log_ticks(double low, double high, mpm_draw_tick *ticks)
 {
-    int n = 0, decade, digit, skip = 1 + (int)((high - low) / 8);
+    int n = 0, decade, digit, skip;
+    if (!(low > -400 && high >= low && high < 400)) return 0; /* beyond all numbers there are */
+    skip = 1 + (int)((high - low) / 8);
     for (decade = (int)floor(low); decade <= (int)ceil(high); decade++)
         for (digit = 1; digit < 10 && n < MPM_DRAW_TICKS; digit++) {
             double at = decade + log10((double)digit);
@@ -820,12 +834,6 @@ static inline int mpm__draw_log_ticks(double low, double high, mpm_draw_tick *ti
     return n;
 }
 
-/* How many steps an axis has room for; a canvas unit that is no size gives none. */
-static inline int mpm__draw_want(double room)
-{
-    return room > 0 ? room < MPM_DRAW_TICKS ? (int)room : MPM_DRAW_TICKS : 0;
-}
-
 MPM_API int mpm_draw_ticks(double low, double high, int is_log, int want, mpm_draw_tick ticks[MPM_DRAW_TICKS])
 {
     double step = mpm_draw_nice((high - low) / (want > 2 ? want : 2)), k;
@@ -837,7 +845,8 @@ MPM_API int mpm_draw_ticks(double low, double high, int is_log, int want, mpm_dr
     if (step * (want > 2 ? want : 2) < 0.999 * (high - low)) step = mpm_draw_nice(2.51 * step);
     for (k = ceil(low / step - 1e-6); k * step <= high + 1e-6 * step && n < MPM_DRAW_TICKS; k++) {
         ticks[n].at = k * step;
-        mpm__draw_tick_number(ticks[n++].text, k * step, step, largest);
+        mpm__draw_tick_number(ticks[n].text, k * step, step, largest);
+        mpm__draw_tick_differs(ticks, n++);
     }
     return n;
 }
@@ -894,16 +903,19 @@ static inline void mpm__draw_frame(mpm_draw_canvas *c, const mpm__draw_axes *a)
     mpm__draw_hair(c, a->right, a->top - h, a->right, a->bottom + h, MPM__DRAW_FRAME);
 }
 
+/* Whole steps between ticks, of any room. */
+static inline int mpm__draw_steps(double room) { return mpm__draw_whole(floor(room), 0, MPM_DRAW_TICKS); }
+
 static inline int mpm__draw_ticks_x(const mpm_draw_canvas *c, const mpm__draw_axes *a, mpm_draw_tick *ticks)
 {
-    return mpm_draw_ticks(a->low[0], a->high[0], a->log[0],
-                          mpm__draw_want((a->right - a->left) / (62 * c->unit)), ticks);
+    const int want = mpm__draw_steps((a->right - a->left) / (62 * c->unit));
+    return mpm_draw_ticks(a->low[0], a->high[0], a->log[0], want, ticks);
 }
 
 static inline int mpm__draw_ticks_y(const mpm_draw_canvas *c, const mpm__draw_axes *a, mpm_draw_tick *ticks)
 {
-    return mpm_draw_ticks(a->low[1], a->high[1], a->log[1],
-                          mpm__draw_want((a->bottom - a->top) / (42 * c->unit)), ticks);
+    const int want = mpm__draw_steps((a->bottom - a->top) / (42 * c->unit));
+    return mpm_draw_ticks(a->low[1], a->high[1], a->log[1], want, ticks);
 }
 
 /* Light lines behind the data, at the named ticks. */
@@ -985,13 +997,21 @@ static inline double mpm__draw_bottom_room(const mpm__draw_furniture *f)
     return f->bar ? room + MPM__DRAW_BAR : room;
 }
 
+/* Whether a figure can have that place: a unit and sizes that pictures have. */
+static inline int mpm__draw_has_room(const mpm_draw_canvas *c, mpm_draw_rect r)
+{
+    return c->unit > 1e-3 && c->unit < 1e3 && fabs(r.x) < 1e5 && fabs(r.y) < 1e5 && r.width > 0 && r.width < 1e5 &&
+           r.height > 0 && r.height < 1e5;
+}
+
 /* Places the frame inside `where`, leaving room for the rest; with `equal` its sides follow the
-   window and the whole is centred. */
-static inline void mpm__draw_place(const mpm_draw_canvas *c, mpm_draw_rect where, const mpm__draw_furniture *f,
+   window and the whole is centred. Returns 0 where place or window allow none. */
+static inline int mpm__draw_place(const mpm_draw_canvas *c, mpm_draw_rect where, const mpm__draw_furniture *f,
                                    mpm__draw_axes *a)
 {
     double u = c->unit, wide = a->high[0] - a->low[0], high = a->high[1] - a->low[1];
     double spare_x, spare_y, scale;
+    if (!mpm__draw_has_room(c, where) || !(wide > 0 && wide < 1e300 && high > 0 && high < 1e300)) return 0;
     a->left = where.x + MPM__DRAW_PAD * u;
     a->right = where.x + where.width - MPM__DRAW_PAD * u;
     a->top = where.y + (MPM__DRAW_PAD + mpm__draw_top_room(f)) * u;
@@ -1013,6 +1033,12 @@ static inline void mpm__draw_place(const mpm_draw_canvas *c, mpm_draw_rect where
     a->right = floor(a->right) + 0.5;
     a->top = floor(a->top) + 0.5;
     a->bottom = floor(a->bottom) + 0.5;
+    return 1;
+}
+
+static inline mpm_status mpm__draw_no_place(mpm_draw_rect where, mpm_fault *fault)
+{
+    return mpm_fail(fault, MPM_ERR_ARGUMENT, "place, unit or window of the figure", (mpm_real)where.width, -1);
 }
 
 /* Title at the left, note at the right, above the frame. */
@@ -1037,7 +1063,7 @@ static inline void mpm__draw_bar(mpm_draw_canvas *c, mpm_draw_rect where, mpm_dr
     double u = c->unit, size = MPM__DRAW_NUMBER * u, thick = floor(10 * u + 0.5), x, tip = 0.8 * thick;
     double left = floor(where.x) + (below ? tip : 0);
     double right = floor(where.x + where.width) - (above ? tip : 0);
-    int i, n = mpm_draw_ticks(low, high, 0, mpm__draw_want((right - left) / (54 * u)), ticks);
+    int i, n = mpm_draw_ticks(low, high, 0, mpm__draw_steps((right - left) / (54 * u)), ticks);
     if (!(right > left)) return;
     for (x = left; x < right; x++)
         mpm_draw_rectangle(c, x, where.y, 1, thick, mpm_draw_map_color(map, (x + 0.5 - left) / (right - left)));
@@ -1062,14 +1088,13 @@ static inline void mpm__draw_bar(mpm_draw_canvas *c, mpm_draw_rect where, mpm_dr
 MPM_API void mpm_draw_color_bar(mpm_draw_canvas *c, mpm_draw_rect where, mpm_draw_map map, double low, double high,
                                 const char *label)
 {
-    if (high > low) mpm__draw_bar(c, where, map, low, high, 0, 0, label);
+    if (high > low && mpm__draw_has_room(c, where)) mpm__draw_bar(c, where, map, low, high, 0, 0, label);
 }
 
 MPM_API mpm_draw_rect mpm_draw_tile(const mpm_draw_canvas *c, int columns, int rows, int number)
 {
-    mpm_draw_rect r;
-    if (columns < 1) columns = 1;
-    if (rows < 1) rows = 1;
+    mpm_draw_rect r = {0, 0, 0, 0};
+    if (columns < 1 || rows < 1) return r;
     r.width = (double)c->width / columns;
     r.height = (double)c->height / rows;
     r.x = r.width * (number % columns);
@@ -1415,7 +1440,8 @@ static inline mpm_status mpm__draw_cut_bodies(mpm_draw_canvas *c, const mpm__dra
     p.width = MPM__DRAW_FINE * mpm__draw_whole(a->right - a->left, 1, 16384);
     p.height = MPM__DRAW_FINE * mpm__draw_whole(a->bottom - a->top, 1, 16384);
     pixels = (size_t)p.width * (size_t)p.height;
-    memory = (float *)MPM_MALLOC(pixels * 7 * sizeof(float));
+    if (pixels == 0) return MPM_OK; /* nothing of it can be seen */
+    memory = (float *)MPM_MALLOC(mpm_size_mul(pixels, 7 * sizeof(float)));
     if (!memory) return MPM_ERR_MEMORY;
     memset(memory, 0, pixels * 7 * sizeof(float));
     p.weight = memory;
@@ -1511,7 +1537,10 @@ MPM_API mpm_status mpm_draw_cut(mpm_draw_canvas *c, mpm_draw_rect where, const m
     mpm__draw_dot *dots = mpm__draw_cut_gather(d, &n, &status, fault);
     if (!dots) return status;
     mpm__draw_fit(&a, d->window, dots, n, 0.02);
-    mpm__draw_place(c, where, &f, &a);
+    if (!mpm__draw_place(c, where, &f, &a)) {
+        MPM_FREE(dots);
+        return mpm__draw_no_place(where, fault);
+    }
     s = mpm__draw_value_span(dots, n, &a, d->low, d->high);
     status = mpm__draw_cut_bodies(c, &a, dots, n, &s, d);
     MPM_FREE(dots);
@@ -1556,14 +1585,15 @@ MPM_API mpm_status mpm_draw_cuts(mpm_draw_canvas *c, const mpm_draw_cut_desc *cu
     mpm_status status = MPM_OK;
     double height = 0, most = 0;
     int i, rows;
-    if (count < 1 || columns < 1 || panel_width < 1)
+    if (count < 1 || columns < 1 || columns > 16384 || panel_width < 1 || panel_width > 16384 / columns)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "panels", (mpm_real)count, -1);
     for (i = 0; i < count; i++) {
         status = mpm__draw_cut_height(&cuts[i], panel_width, &height, fault);
         if (status < 0) return status;
         if (height > most) most = height;
     }
-    rows = (count + columns - 1) / columns;
+    rows = (count - 1) / columns + 1;
+    if (rows > 16384) return mpm_fail(fault, MPM_ERR_ARGUMENT, "panels", (mpm_real)count, -1);
     status = mpm_draw_canvas_init(c, panel_width * columns, mpm__draw_whole(most, 1, 16384) * rows, NULL, 0);
     if (status < 0) return mpm_fail(fault, status, "size of picture", (mpm_real)most, -1);
     for (i = 0; i < count && status >= 0; i++)
@@ -1626,7 +1656,10 @@ MPM_API mpm_status mpm_draw_scatter(mpm_draw_canvas *c, mpm_draw_rect where, con
     f.bar = d->label && d->value;
     f.equal = d->equal;
     mpm__draw_fit(&a, d->window, dots, n, 0.05);
-    mpm__draw_place(c, where, &f, &a);
+    if (!mpm__draw_place(c, where, &f, &a)) {
+        MPM_FREE(dots);
+        return mpm__draw_no_place(where, fault);
+    }
     s = mpm__draw_value_span(dots, n, &a, d->low, d->high);
     scale = (a.right - a.left) / (a.high[0] - a.low[0]);
     mpm__draw_grid(c, &a);
@@ -1805,7 +1838,7 @@ MPM_API mpm_status mpm_draw_plot(mpm_draw_canvas *c, mpm_draw_rect where, const 
     f.note = d->note;
     f.x_label = d->x_label;
     f.y_label = d->y_label;
-    mpm__draw_place(c, where, &f, &a);
+    if (!mpm__draw_place(c, where, &f, &a)) return mpm__draw_no_place(where, fault);
     mpm__draw_grid(c, &a);
     mpm__draw_clip(c, a.left, a.top, a.right, a.bottom);
     for (k = 0; k < d->curve_count; k++) mpm__draw_one_curve(c, &a, &d->curves[k]);

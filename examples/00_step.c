@@ -149,5 +149,5 @@ int main(void)
     for (int k = 0; k < 800; k++) step();
     printf("energy kept: %.1f %%\n", 100 * energy(&v) / before);
     printf("the ball leaves at %.1f m/s\n", v);
-    return 0;
+    return fflush(stdout) || ferror(stdout); /* 1 if what was printed is lost */
 }

@@ -69,5 +69,5 @@ int main(void)
     printf("mean plastic strain: %.3f\n", now.plastic_strain_mean);
     printf("it leaves the wall at %.1f m/s\n", now.momentum[2] / now.mass);
     mpm_free(&w);
-    return 0;
+    return fflush(stdout) || ferror(stdout); /* 1 if what was printed is lost */
 }

@@ -74,5 +74,5 @@ int main(void)
         const double f = frequency(&al, length, cells);
         printf("%2d cells: error %.4f %%, %.2f Hz\n", cells, 100 * (f / exact - 1), f);
     }
-    return 0;
+    return fflush(stdout) || ferror(stdout); /* 1 if what was printed is lost */
 }

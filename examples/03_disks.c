@@ -72,5 +72,5 @@ int main(void)
     printf("energy kept, with what is elastic and what contact took: %.2f %%\n",
            100 * (t.kinetic + t.internal + w.ledger.contact) / start);
     mpm_free(&w);
-    return 0;
+    return fflush(stdout) || ferror(stdout); /* 1 if what was printed is lost */
 }

@@ -77,5 +77,5 @@ int main(void)
         printf("friction %.1f: %.4f m/s^2, expected %.4f: error %.2f %% of g sin a\n", friction[i], found, exact,
                100 * (found - exact) / (g * sin(angle)));
     }
-    return 0;
+    return fflush(stdout) || ferror(stdout); /* 1 if what was printed is lost */
 }

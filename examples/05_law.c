@@ -139,5 +139,5 @@ int main(void)
     printf("contact: peak traction %.2f MPa\n", peak / (SIDE * SIDE));
     printf("contact: spent in drawing apart %.3f J/m^2\n", (before - energy(&w)) / (SIDE * SIDE));
     mpm_free(&w);
-    return 0;
+    return fflush(stdout) || ferror(stdout); /* 1 if what was printed is lost */
 }

@@ -107,5 +107,5 @@ int main(int argc, char **argv)
     mpm_free(&whole);
     mpm_free(&second);
     remove(path);
-    return 0;
+    return fflush(stdout) || ferror(stdout); /* 1 if what was printed is lost */
 }

@@ -130,5 +130,5 @@ int main(int argc, char **argv)
                mpm_body_totals(&w, k).low[2], mpm_body_totals(&w, k).high[2]);
     printf("in all: %.5f kg, %ld points have left\n", mpm_body_totals(&w, -1).mass, w.retired);
     mpm_free(&w);
-    return 0;
+    return fflush(stdout) || ferror(stdout); /* 1 if what was printed is lost */
 }

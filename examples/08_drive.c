@@ -144,5 +144,5 @@ int main(void)
     printf("momentum %.6f ng m/s, traction x area x time %.6f ng m/s\n", t.momentum[2], pull * area * (double)w.time);
     printf("work of the traction %.4f pJ, energy of the free block %.4f pJ\n", -w.ledger.walls, t.kinetic + t.internal);
     mpm_free(&w);
-    return 0;
+    return fflush(stdout) || ferror(stdout); /* 1 if what was printed is lost */
 }

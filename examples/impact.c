@@ -142,10 +142,10 @@ static void print_table(const impact *s, const impact_case *c, double cpu)
            100 * case_share(w->ledger.hold, start));
     printf("  errors: mass %.1e, momentum %.1e, energy unaccounted %.3f %%\n", r.mass_error, r.momentum_error,
            100 * r.energy_unaccounted);
-    printf("  bond floor acted                %10ld times of %ld\n", (long)w->tally[MPM_TALLY_BOND_FLOOR],
-           (long)w->tally[MPM_TALLY_BOND_GROWTH]);
-    printf("  %ld steps of %.4g ps, %.1f s CPU, %.2f million point-steps/s, %.0f bytes per point\n", w->steps,
-           (double)s->dt * 1e6, cpu, cpu > 0 ? 1e-6 * (double)w->steps * (double)r.all.points / cpu : 0,
+    printf("  bond floor acted                %10lld times of %lld\n", (long long)w->tally[MPM_TALLY_BOND_FLOOR],
+           (long long)w->tally[MPM_TALLY_BOND_GROWTH]);
+    printf("  %lld steps of %.4g ps, %.1f s CPU, %.2f million point-steps/s, %.0f bytes per point\n",
+           (long long)w->steps, (double)s->dt * 1e6, cpu, cpu > 0 ? 1e-6 * (double)w->steps * (double)r.all.points / cpu : 0,
            (double)mpm_bytes_used(w) / (double)r.all.points);
 }
 
@@ -178,7 +178,7 @@ static int run(impact *s, const impact_case *c, output *o)
     return 1;
 }
 
-int main(int argc, char **argv)
+static int carry_out(int argc, char **argv)
 {
     impact_case c = impact_case_default();
     output o = output_of("build/impact-out", "impact", "um", "ns", 1);
@@ -203,3 +203,5 @@ int main(int argc, char **argv)
     mpm_free(&s.world);
     return ok ? 0 : 1;
 }
+
+int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

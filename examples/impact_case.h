@@ -81,7 +81,7 @@ typedef struct impact {
     mpm_material material[2]; /* of particle and substrate */
     mpm_bond bond;
     mpm_real dt;          /* us */
-    long steps;
+    int64_t steps;
     mpm_totals start;
 } impact;
 
@@ -295,7 +295,7 @@ static inline int impact_build(impact *s, const impact_case *c, mpm_desc d, cons
         mpm_free(&s->world);
         return 0;
     }
-    s->steps = (long)steps;
+    s->steps = (int64_t)steps;
     s->start = mpm_body_totals(&s->world, -1);
     return 1;
 }

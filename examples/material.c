@@ -94,7 +94,7 @@ static void print_all(const mpm_material *m, const mpm_material_state *s, double
     print("hugoniot_pressure_MPa", 1e-6 * hugoniot);
 }
 
-int main(int argc, char **argv)
+static int carry_out(int argc, char **argv)
 {
     const char *name = "al", *model = "", *curve = "";
     double strain = 0.1, rate = 1e6, temperature = 300, density = 0, energy = 0;
@@ -142,3 +142,5 @@ int main(int argc, char **argv)
     print_all(&m, &s, (double)hugoniot);
     return 0;
 }
+
+int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

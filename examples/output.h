@@ -20,7 +20,7 @@ typedef struct output {
 
     long frame;                 /* frames written */
     double cpu, earlier;        /* seconds without the writing: by output_cpu; when output_start was called */
-    long first;                 /* steps when output_start was called */
+    int64_t first;              /* steps when output_start was called */
     clock_t begun, shown, writing;
 } output;
 
@@ -81,10 +81,10 @@ static inline double output_cpu(output *o)
 }
 
 /* Whether the next frame is due, of a run of that many steps. Test: 60_examples. */
-static inline int output_due(const output *o, const mpm_world *w, long steps)
+static inline int output_due(const output *o, const mpm_world *w, int64_t steps)
 {
     if (o->frames <= 1) return o->frames == 1 && o->frame == 0 && w->steps >= steps;
-    return w->steps * (o->frames - 1) >= o->frame * steps;
+    return (int64_t)w->steps * (o->frames - 1) >= (int64_t)o->frame * steps;
 }
 
 /* ---- pictures ------------------------------------------------------------------------------ */
@@ -216,7 +216,7 @@ static inline int output_frame(output *o, const mpm_world *w, const mpm_io_field
 /* ---- progress ------------------------------------------------------------------------------ */
 
 /* The progress line, about twice a second of CPU time. */
-static inline void output_progress(output *o, const mpm_world *w, long steps)
+static inline void output_progress(output *o, const mpm_world *w, int64_t steps)
 {
     mpm_io_progress p;
     char line[160];

@@ -205,7 +205,7 @@ static int run(impact *s, const impact_case *ic, const pull_case *o, curve *c, c
     return 1;
 }
 
-int main(int argc, char **argv)
+static int carry_out(int argc, char **argv)
 {
     impact_case c = impact_case_default();
     pull_case o = {20, 20, 5, 4, 3, "build/pull-out", 0};
@@ -245,3 +245,5 @@ int main(int argc, char **argv)
     mpm_free(&s.world);
     return ok ? 0 : 1;
 }
+
+int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

@@ -202,7 +202,7 @@ static int bad_number(const char *name, double value, const char *want)
 }
 
 /* The run's length in steps, and room for all that will be fed in it. */
-static int parse_length(const settings *o, mpm_spray_desc *d, long *steps)
+static int parse_length(const settings *o, mpm_spray_desc *d, int64_t *steps)
 {
     double count, most;
     if (strlen(o->out) + 64 > PATH_BYTES || strlen(o->restart) + 64 > PATH_BYTES) {
@@ -222,12 +222,12 @@ static int parse_length(const settings *o, mpm_spray_desc *d, long *steps)
     if (o->particles > 0 && most > (double)o->particles) most = (double)o->particles;
     if (most > 1e9) return bad_number("feed", o->feed, "smaller: more than 1e9 particles in this run");
     if (count < 1 || count > 1e15) return bad_number("time", o->time, "at least one step");
-    *steps = (long)count;
+    *steps = (int64_t)count;
     d->capacity = (int32_t)most;
     return 0;
 }
 
-static int describe(const settings *o, mpm_spray_desc *d, mpm_spray_window *w, long *steps)
+static int describe(const settings *o, mpm_spray_desc *d, mpm_spray_window *w, int64_t *steps)
 {
     *d = mpm_spray_desc_default();
     d->gas_speed = (mpm_real)o->speed;
@@ -534,12 +534,12 @@ static mpm_status write_summary(const char *folder, const result *r, int count, 
 
 /* ---- the run ------------------------------------------------------------------------------- */
 
-static void show_progress(const mpm_spray *s, long first, long steps, double elapsed)
+static void show_progress(const mpm_spray *s, int64_t first, int64_t steps, double elapsed)
 {
     mpm_io_progress p;
     char text[160];
     memset(&p, 0, sizeof p);
-    p.step = (long)s->tally.step;
+    p.step = s->tally.step;
     p.first_step = first;
     p.steps = steps;
     p.time = (double)mpm_spray_time(s) * 1e3;
@@ -552,17 +552,17 @@ static void show_progress(const mpm_spray *s, long first, long steps, double ela
 }
 
 /* Steps to the end, a frame every so often. *cpu: seconds spent in steps. Returns the status. */
-static mpm_status run(mpm_spray *s, const settings *o, long steps, spray_columns *c, const char *note, double *cpu,
+static mpm_status run(mpm_spray *s, const settings *o, int64_t steps, spray_columns *c, const char *note, double *cpu,
                       mpm_fault *fault)
 {
-    const long first = (long)s->tally.step, every = steps_per_frame(o, steps);
+    const int64_t first = s->tally.step, every = steps_per_frame(o, steps);
     mpm_status status = MPM_OK;
     clock_t begin = clock();
     time_t shown = time(NULL), started = shown;
     while (s->tally.step < steps && status >= 0) {
-        long step;
+        int64_t step;
         if ((status = mpm_spray_step(s)) < 0) *fault = s->fault;
-        step = (long)s->tally.step;
+        step = s->tally.step;
         if (status >= 0 && (step % every == 0 || (step == steps && o->frames > 0))) {
             *cpu += (double)(clock() - begin) / CLOCKS_PER_SEC;
             status = write_frame(o->out, s, c, note, fault);
@@ -611,7 +611,7 @@ static mpm_status write_all(mpm_spray *s, const settings *o, const option *row, 
     return status;
 }
 
-int main(int argc, char **argv)
+static int carry_out(int argc, char **argv)
 {
     static const char about[] = "Powder from a nozzle to a target: flight, collisions, deposition.";
     static char note[TEXT_ROOM];
@@ -625,8 +625,7 @@ int main(int argc, char **argv)
     mpm_fault fault = {MPM_OK, NULL, 0, -1};
     spray_columns columns;
     mpm_status status;
-    long steps = 0;
-    int64_t before;
+    int64_t before, steps = 0;
     double cpu = 0;
     if (parsed) return parsed > 0 ? 0 : 1;
     if (describe(&o, &d, &window, &steps)) return 1;
@@ -655,3 +654,5 @@ int main(int argc, char **argv)
     mpm_spray_free(&s);
     return status < 0;
 }
+
+int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

@@ -101,8 +101,8 @@ static void print_table(const taylor *s, const taylor_case *c, const taylor_resu
     printf("  mean velocity          %10.3f m/s\n", r->velocity);
     printf("  errors: mass %.1e, momentum %.1e, energy unaccounted %.3f %%\n", r->mass_error, r->momentum_error,
            100 * r->energy_unaccounted);
-    printf("  %d points, %ld retired, %ld steps of %.4g ns, %.1f s CPU\n", (int)w->points.count, w->retired, w->steps,
-           (double)s->dt * 1e6, cpu);
+    printf("  %d points, %ld retired, %lld steps of %.4g ns, %.1f s CPU\n", (int)w->points.count, w->retired,
+           (long long)w->steps, (double)s->dt * 1e6, cpu);
 }
 
 /* Time integration: one call per phase. */
@@ -167,7 +167,7 @@ static int options_of(taylor_case *c, option *o)
     return n;
 }
 
-int main(int argc, char **argv)
+static int carry_out(int argc, char **argv)
 {
     taylor_case c = taylor_case_default();
     output o = output_of("build/taylor-out", "taylor", "mm", "us", 1e-3);
@@ -186,3 +186,5 @@ int main(int argc, char **argv)
     mpm_free(&s.world);
     return ok ? 0 : 1;
 }
+
+int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

@@ -56,7 +56,7 @@ typedef struct taylor {
     int first_radius, first_height;       /* user fields of the points: where they began */
     double spacing, cell, radius, length; /* as used, mm: multiples of the spacing */
     mpm_real dt;                          /* ms */
-    long steps;
+    int64_t steps;
     mpm_totals start;
 } taylor;
 
@@ -179,7 +179,7 @@ static inline int taylor_begin(taylor *s, const taylor_case *c, char *message, s
         mpm_free(&s->world);
         return 0;
     }
-    s->steps = (long)steps;
+    s->steps = (int64_t)steps;
     s->start = mpm_body_totals(&s->world, -1);
     return 1;
 }

@@ -346,6 +346,32 @@ static void test_ticks(void)
     equal("... powers beyond any number", mpm_draw_ticks(-1e300, 1e300, 1, 4, ticks), 0);
 }
 
+/* Far from zero, two ticks bear different numbers, each within a hundredth of a step of its place. */
+static void test_far_ticks(void)
+{
+    static const double range[][2] = {{1e6, 1e6 + 100},     {101275, 101375},         {250000, 250400},
+                                      {300e6, 300.5e6},     {123400, 123460},         {0.01, 0.0100005},
+                                      {0.3, 0.300014},      {99990, 100010},          {99000, 99990},
+                                      {0, 250400},          {298, 298.002},           {298, 298.0000001},
+                                      {-1e6 - 3, -1e6},     {1e15, 1e15 + 40},        {1e-200, 1.0001e-200}};
+    mpm_draw_tick ticks[MPM_DRAW_TICKS];
+    size_t r;
+    for (r = 0; r < sizeof range / sizeof range[0]; r++) {
+        const int n = mpm_draw_ticks(range[r][0], range[r][1], 0, 6, ticks);
+        const double step = n > 1 ? ticks[1].at - ticks[0].at : 0;
+        char what[80];
+        int i, k, same = 0, off = 0;
+        for (i = 0; i < n; i++) {
+            for (k = 0; k < i; k++) same += strcmp(ticks[i].text, ticks[k].text) == 0;
+            off += !(fabs(strtod(ticks[i].text, NULL) - ticks[i].at) <= 0.01 * step);
+        }
+        sprintf(what, "ticks of %.10g .. %.10g that repeat another or are off", range[r][0], range[r][1]);
+        equal(what, same + off + (n < 3 || n > 10), 0);
+    }
+    mpm_draw_ticks(1e15, 1e15 + 1, 0, 6, ticks);
+    holds("closer than numbers have digits: one of them only", ticks[0].text[0] && !ticks[1].text[0]);
+}
+
 /* ---- scatter and plot ---------------------------------------------------------------------- */
 
 static void test_plots(void)
@@ -400,6 +426,53 @@ static void test_plots(void)
     mpm_draw_canvas_free(&c);
 }
 
+/* Sizes that no picture has: a status, or nothing drawn. */
+static void test_odd_sizes(void)
+{
+    static const double units[4] = {0, 1e-300, 1e300, (double)NAN};
+    mpm_draw_cut_desc d = make_cut(), two[2];
+    mpm_draw_tick ticks[MPM_DRAW_TICKS];
+    mpm_draw_canvas c;
+    mpm_draw_rect r, whole;
+    mpm_fault f;
+    int k;
+    mpm_draw_canvas_init(&c, 300, 200, NULL, 0);
+    whole = mpm_draw_tile(&c, 1, 1, 0);
+    r = mpm_draw_tile(&c, 0, 1, 0);
+    holds("a tile of no columns is empty", !(r.width > 0) && !(r.height > 0));
+    equal("... and holds no figure", mpm_draw_cut(&c, r, &d, &f), MPM_ERR_ARGUMENT);
+    holds("... which is said", strncmp(f.field, "place", 5) == 0);
+    r = mpm_draw_tile(&c, 1, -1, 3);
+    holds("nor has one of no rows a size", !(r.width > 0));
+    for (k = 0; k < 4; k++) {
+        c.unit = units[k];
+        equal("a unit that no picture has", mpm_draw_cut(&c, whole, &d, &f), MPM_ERR_ARGUMENT);
+        mpm_draw_color_bar(&c, whole, MPM_DRAW_HEAT, 0, 1, "l");
+        c.unit = 1;
+        r = whole;
+        if (k % 2) r.x = 1e17;
+        else r.width = units[k] > 0 ? 1e12 : (double)INFINITY;
+        equal("a place that no picture has", mpm_draw_cut(&c, r, &d, &f), MPM_ERR_ARGUMENT);
+        mpm_draw_color_bar(&c, r, MPM_DRAW_HEAT, 0, 1, "l");
+    }
+    equal("nothing is drawn", darkness(&c, 0, 0, 300, 200), 0);
+    d.window[0] = -1e308;
+    d.window[1] = 1e308;
+    d.window[3] = 1;
+    equal("a window wider than numbers", mpm_draw_cut(&c, whole, &d, &f), MPM_ERR_ARGUMENT);
+    d.window[0] = 0;
+    d.window[1] = 1e-300;
+    d.window[3] = 1e299;
+    holds("a window of extreme sides comes to an end", mpm_draw_cut(&c, whole, &d, &f) <= 0);
+    mpm_draw_canvas_free(&c);
+    two[0] = two[1] = make_cut();
+    equal("columns without end", mpm_draw_cuts(&c, two, 2, 156128629, 1521821875, &f), MPM_ERR_ARGUMENT);
+    equal("columns by the billion", mpm_draw_cuts(&c, two, 2, 2147483647, 1, &f), MPM_ERR_ARGUMENT);
+    equal("powers that no number has", mpm_draw_ticks(-1e300, 1e300, 1, 6, ticks), 0);
+    equal("ticks of nothing", mpm_draw_ticks((double)NAN, 1, 0, 6, ticks), 0);
+    equal("a map that there is not", (long)mpm_draw_map_color((mpm_draw_map)77, 0.5), 0x9aa0a6);
+}
+
 int main(void)
 {
     if (mpm_io_make_directory(FOLDER, NULL) < 0) return 1;
@@ -410,6 +483,8 @@ int main(void)
     test_world();
     test_numbers();
     test_ticks();
+    test_far_ticks();
+    test_odd_sizes();
     test_color_bar();
     test_plots();
     return check_end();

@@ -217,9 +217,69 @@ static void members(void)
     CHECK_EQUAL("every member of a case is an option", bytes[0] + bytes[1], sizeof c);
 }
 
+static void write_record(const char *path, const char *text, size_t n)
+{
+    FILE *f = fopen(path, "wb");
+    if (!f) return;
+    fwrite(text, 1, n, f);
+    fclose(f);
+}
+
+/* A kept run of which a byte is missing or changed is none, whichever it is. */
+static void stores(void)
+{
+    study s = study_of(FOLDER "/store");
+    const impact_case c = study_case_default();
+    double value[STUDY_VALUES], back[STUDY_VALUES];
+    char message[400], path[PATH_BYTES], text[12000], *key = study_key(&c, 0);
+    size_t n, at;
+    int k, wrong = 0;
+    for (k = 0; k < STUDY_VALUES; k++) value[k] = k == 3 ? NAN : 0.1 + k / 7.0;
+    study_path(&s, key, path, sizeof path);
+    remove(path);
+    CHECK_EQUAL("no run is kept", study_look(&s, &c, back), 0);
+    CHECK_EQUAL("one is", study_keep(&s, &c, value, message, sizeof message), 1);
+    CHECK_EQUAL("... and found", study_look(&s, &c, back), 1);
+    CHECK_TRUE("... bit for bit", isnan(back[3]) && !memcmp(&back[4], &value[4], (STUDY_VALUES - 4) * sizeof *value));
+    n = contents(path, text, sizeof text);
+    for (at = 0; at + 2 < n; at++) { /* not the closing "}" and line */
+        write_record(path, text, at);
+        wrong += study_look(&s, &c, back) > 0 && at + 4 < n;
+        text[at] = (char)(text[at] ^ 1);
+        write_record(path, text, n);
+        if (study_look(&s, &c, back) > 0)
+            for (k = 0; k < STUDY_VALUES; k++) wrong += k != 3 && memcmp(&back[k], &value[k], sizeof *value) != 0;
+        text[at] = (char)(text[at] ^ 1);
+    }
+    CHECK_EQUAL("damaged runs that are taken with other values", wrong, 0);
+    remove(path);
+    free(key);
+}
+
+/* Names and options of any length are whole, or refused. */
+static void lengths(void)
+{
+    static char folder[5000], path[PATH_BYTES];
+    const char *value = folder;
+    char number[OPTION_NUMBER];
+    option o[1];
+    int n = 0;
+    memset(folder, 'x', sizeof folder - 1);
+    option_add(o, &n, "out", OPTION_TEXT, &value, "");
+    CHECK_EQUAL("an option of 4999 characters", strlen(option_text(&o[0], number)), 4999);
+    CHECK_EQUAL("a path too long is none", strlen(file_in(folder, "impact.png", path, sizeof path)), 0);
+    folder[PATH_BYTES - 12] = 0;
+    CHECK_EQUAL("the longest is whole", strlen(file_in(folder, "impact.png", path, sizeof path)), PATH_BYTES - 1);
+    folder[PATH_BYTES - 12] = 'x';
+    folder[PATH_BYTES - 11] = 0;
+    CHECK_EQUAL("... and one more is refused", strlen(file_in(folder, "impact.png", path, sizeof path)), 0);
+}
+
 int main(void)
 {
     members();
+    stores();
+    lengths();
     critical();
     calibration();
     particles();

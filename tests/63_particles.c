@@ -344,8 +344,23 @@ static void partners(void)
     CHECK_TRUE("... of all three bodies", found[1] > 0 && found[2] > 0 && found[3] > 0);
 }
 
+/* The next frame is due evenly in time, also where steps times frames pass 32 bits. */
+static void evenly(void)
+{
+    output o = output_of(FOLDER, "none", "um", "ns", 1);
+    mpm_world w;
+    int early = 0;
+    memset(&w, 0, sizeof w);
+    o.frames = 1001;
+    for (w.steps = 0; w.steps <= 3000000; w.steps += 100)
+        if (output_due(&o, &w, 3000000)) early += w.steps != 3000 * o.frame++;
+    CHECK_EQUAL("frames of 3,000,000 steps", o.frame, 1001);
+    CHECK_EQUAL("... at other steps than every 3000th", early, 0);
+}
+
 int main(void)
 {
+    evenly();
     CHECK_EQUAL("an empty folder", system("rm -rf " FOLDER " && mkdir -p " FOLDER), 0);
     interrupted("ranked", 0);
     partners();

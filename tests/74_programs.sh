@@ -53,5 +53,20 @@ for c in "$dir"/*.c; do
         result $? "$name prints $text"
     done <"$dir/$name.says"
 done
+# What is printed and lost is an error: of every program with options, by running it (built ones; make builds all);
+# of the short ones, by their last line.
+for c in examples/*.c examples/studies/*.c examples/studies/reproduction/main.c; do
+    name=$(basename "$c" .c)
+    [ "$name" = main ] && name=reproduction
+    grep -qE 'int main\(' "$c" || continue
+    grep -qE 'return (program_end\(|fflush\(stdout\) \|\| ferror)' "$c"
+    result $? "$c ends with a look at standard output"
+    [ -c /dev/full ] && [ -x "build/$name" ] && grep -q program_end "$c" || continue
+    "build/$name" --help >/dev/full 2>"$dir/full"
+    grep -q "standard output" "$dir/full"
+    result $? "$name says that standard output is full"
+    ! "build/$name" --help >/dev/full 2>&1
+    result $? "... and ends with another status than 0"
+done
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -247,7 +247,7 @@ static int run(const calibration *q, study *s, const errand *e, char *message, s
     return status;
 }
 
-int main(int argc, char **argv)
+static int carry_out(int argc, char **argv)
 {
     calibration q = calibration_default();
     study s = study_of("build/calibrate-out");
@@ -267,3 +267,5 @@ int main(int argc, char **argv)
     if (status > 0 && e.task < 0) status = collect(&q, &s, o, n, message, sizeof message);
     return status > 0 ? 0 : !complain(message);
 }
+
+int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

@@ -209,7 +209,7 @@ static int search(request *q, findings *f, char *message, size_t n)
     return 1;
 }
 
-int main(int argc, char **argv)
+static int carry_out(int argc, char **argv)
 {
     static findings f;
     request q;
@@ -236,3 +236,5 @@ int main(int argc, char **argv)
     if (!q.s.quiet) print_answers(&q, &f);
     return 0;
 }
+
+int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

@@ -6,7 +6,7 @@
 #define MPM_IMPLEMENTATION
 #include "particles_case.h"
 
-int main(int argc, char **argv)
+static int carry_out(int argc, char **argv)
 {
     static particles_case q;
     double spread = 60, height = 0;
@@ -40,3 +40,5 @@ int main(int argc, char **argv)
     if (!particles_place(&q, spread, height, seed, message, sizeof message)) return !complain(message);
     return particles_done(&q) ? 0 : particles_main(&q, o, n);
 }
+
+int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

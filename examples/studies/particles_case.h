@@ -498,11 +498,19 @@ static inline int particles_resume(impact *s, particles_case *q)
 {
     char path[PATH_BYTES], text[200];
     mpm_fault fault;
-    FILE *f = fopen(file_in(q->out.folder, "checkpoint.bin", path, sizeof path), "rb");
+    FILE *f;
+    file_in(q->out.folder, "checkpoint.bin", path, sizeof path);
+    errno = 0;
+    f = fopen(path, "rb");
+    if (!f && *path && errno != ENOENT) { /* there, but not to be read: what it holds must not be lost */
+        fprintf(stderr, "error: %s cannot be read\n", path);
+        return 0;
+    }
     if (f) {
         fclose(f);
         if (particles_checkpoint(s, q, 0, path, &fault) >= 0) {
-            if (!q->out.quiet) printf("going on from step %ld of %ld\n", s->world.steps, s->steps);
+            if (!q->out.quiet)
+                printf("going on from step %lld of %lld\n", (long long)s->world.steps, (long long)s->steps);
             return 1;
         }
         if (s->world.points.count == 0) return report(&fault, path);
@@ -547,7 +555,8 @@ static inline int particles_main(particles_case *q, const option *o, int n)
     int status;
     if (!particles_begin(&s, q, message, sizeof message)) return !complain(message);
     status = particles_resume(&s, q) ? particles_run(&s, q) : 0;
-    if (status < 0) printf("stopped at step %ld of %ld; run again to go on\n", s.world.steps, s.steps);
+    if (status < 0)
+        printf("stopped at step %lld of %lld; run again to go on\n", (long long)s.world.steps, (long long)s.steps);
     if (status > 0) {
         particles_report(&s, q, r);
         status = particles_table(q, r) && particles_pairs(&s, q) && particles_summary(&s, q, r, o, n);

@@ -812,7 +812,7 @@ static int options(study *st, int argc, char **argv)
     return options_parse(argc, argv, "Runs source B's results again and compares.", o, n);
 }
 
-int main(int argc, char **argv)
+static int carry_out(int argc, char **argv)
 {
     static record records[RECORDS + 1];
     study st;
@@ -839,3 +839,5 @@ fail:
     fprintf(stderr, "error: %s\n", text);
     return 1;
 }
+
+int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

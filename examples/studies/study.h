@@ -246,13 +246,13 @@ static inline int study_leaves(const mpm_world *w)
 
 /* What is watched while a case runs: the bond, and the particle's way. */
 typedef struct study_watch {
-    long late, part;       /* steps: where the last eighth begins; a twentieth */
-    long held, held_late;  /* steps in which a pair was held: of this twentieth; of the last eighth */
+    int64_t late, part;      /* steps: where the last eighth begins; a twentieth */
+    int64_t held, held_late; /* steps in which a pair was held: of this twentieth; of the last eighth */
     double before;         /* the particle's velocity a twentieth ago */
     double height, time;   /* of the particle where the last eighth begins */
 } study_watch;
 
-static inline study_watch study_watch_of(long steps)
+static inline study_watch study_watch_of(int64_t steps)
 {
     study_watch k;
     memset(&k, 0, sizeof k);

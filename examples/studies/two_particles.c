@@ -6,7 +6,7 @@
 #define MPM_IMPLEMENTATION
 #include "particles_case.h"
 
-int main(int argc, char **argv)
+static int carry_out(int argc, char **argv)
 {
     static particles_case q;
     const char *leads = "top";
@@ -37,3 +37,5 @@ int main(int argc, char **argv)
     q.center[top][2] = height;
     return particles_done(&q) ? 0 : particles_main(&q, o, n);
 }
+
+int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

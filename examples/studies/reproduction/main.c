@@ -97,7 +97,7 @@ static int options(work *w, int argc, char **argv)
                                      "it goes on.", o, n);
 }
 
-int main(int argc, char **argv)
+static int carry_out(int argc, char **argv)
 {
     static char text[200000];
     static work w;
@@ -115,3 +115,5 @@ int main(int argc, char **argv)
     if (status < 0) printf("stopped after %ld new runs; run again to go on\n", w.s.fresh);
     return status < 0 ? 3 : 0;
 }
+
+int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

@@ -823,8 +823,8 @@ MPM_API void mpm_grid_update(mpm_world *w);
 MPM_API void mpm_contact_find(mpm_world *w);
 
 /* Contact on the pairs, in the scheme of the description: approaching ones, (m_b P_a - m_a P_b) . n > 0 (A 3.29), get
-   the impulse that their rule asks for, at most (m_a P_b - m_b P_a) / (m_a + m_b) on a (A 3.31); separating ones are held as far as
-   pair.hold says (A 4.7). Test: 23_solid, 25_contact, 30_bond. */
+   the impulse that their rule asks for, at most (m_a P_b - m_b P_a) / (m_a + m_b) on a (A 3.31); separating ones are
+   held as far as pair.hold says (A 4.7). Test: 23_solid, 25_contact, 27_schemes, 30_bond. */
 MPM_API void mpm_contact_apply(mpm_world *w);
 
 /* Velocity of the points from nodal accelerations, v_p += dt sum N_I f_I / m_I (A 3.32, first half).

@@ -145,7 +145,8 @@ static void print_table(const impact *s, const impact_case *c, double cpu)
     printf("  bond floor acted                %10lld times of %lld\n", (long long)w->tally[MPM_TALLY_BOND_FLOOR],
            (long long)w->tally[MPM_TALLY_BOND_GROWTH]);
     printf("  %lld steps of %.4g ps, %.1f s CPU, %.2f million point-steps/s, %.0f bytes per point\n",
-           (long long)w->steps, (double)s->dt * 1e6, cpu, cpu > 0 ? 1e-6 * (double)w->steps * (double)r.all.points / cpu : 0,
+           (long long)w->steps, (double)s->dt * 1e6, cpu,
+           cpu > 0 ? 1e-6 * (double)w->steps * (double)r.all.points / cpu : 0,
            (double)mpm_bytes_used(w) / (double)r.all.points);
 }
 

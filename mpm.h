@@ -554,14 +554,14 @@ typedef struct mpm_points {
     int32_t *id;              /* number of the point as created: survives sorting */
 } mpm_points;
 
-/* Points to make a body of, or to add to one: `count` entries per array. NULL where the body's description says
-   it for all. */
+/* Points to make a body of, or to add to one: `count` entries per array, which must not be the world's own. NULL where
+   the body's description says it for all. */
 typedef struct mpm_cloud {
     int32_t count;
     const mpm_real *x[3];     /* position; x[1] may be NULL in two dimensions */
     const mpm_real *v[3];     /* velocity; NULL: the body's */
     const mpm_real *mass;     /* in axisymmetry of the whole ring; NULL: volume times the body's density */
-    const mpm_real *volume;   /* NULL: a cube, square or ring section of the body's spacing. Where mass and volume are
+    const mpm_real *volume;   /* NULL: a whole cube, square or ring section of the body's spacing. Where mass and volume are
                                  given, the density is the one over the other, else the body's */
     const uint8_t *flags;     /* MPM_POINT_SURFACE ...; NULL: 0, so that none bonds */
 } mpm_cloud;
@@ -593,7 +593,7 @@ typedef struct mpm_body {
     int32_t first, count, active;
     mpm_real point_mass;     /* mean mass of its points */
     mpm_real mass[2];        /* mass of the points at the damped bottom and circumference */
-    mpm_real area[2];        /* area of those faces */
+    mpm_real area[2];        /* area of those faces, where any is damped */
 } mpm_body;
 
 /* ---- the grid ------------------------------------------------------------------------------ */
@@ -646,7 +646,7 @@ typedef struct mpm_pair {
     mpm_real limit;      /* largest impulse of the hold [mass length/time]; 0: none */
     mpm_real impulse[3]; /* momentum that a got and b gave in this step */
     mpm_real settled[3], next[3]; /* what a got so far at the level of velocity being settled, and shall get */
-    int held;            /* 1 if the hold gave it */
+    int held;            /* 1 if the hold gave it, or in the consistent scheme if it holds all of the pair */
 } mpm_pair;
 
 /* Work space of the plane that parts the points of a pair: see mpm__plane_normals. */
@@ -675,7 +675,8 @@ typedef struct mpm_rule {
     mpm_contact contact;
 } mpm_rule;
 
-/* Everything. Plain data: read it, and write it between phases if you know why. */
+/* Everything. Plain data: read it, and write it between phases if you know why. When a world grows, its arrays move:
+   points, body, rule and the grid's; take no pointers into them across calls that add. */
 typedef struct mpm_world {
     mpm_desc desc;
     mpm_real time, dt;       /* now; the step under way, set by mpm_locate */
@@ -917,7 +918,7 @@ MPM_API size_t mpm_bytes_used(const mpm_world *w);
    MPM_BLOBS(w->bodies) of them, and returns how many. To go on from stored ones, set a world up as before - the
    same description, bodies, rules and user fields, room for as many points -, read them (mpm_io_checkpoint_read)
    and call mpm_restored. Test: 40_io "restart": the run goes on bit for bit. */
-#define MPM_BLOBS(bodies) (48 + (bodies))
+#define MPM_BLOBS(bodies) (48 + 2 * (bodies))
 MPM_API int mpm_blobs(mpm_world *w, mpm_blob *blob);
 
 /* Checks what was read into the blobs of mpm_blobs, before anything of it is used: numbers of points against each
@@ -1251,6 +1252,13 @@ MPM_API void mpm_node_push(mpm_world *w, int32_t slot, mpm_real j[3])
 {
     mpm__constrain(w, &w->node[slot], j, NULL);
     mpm__give(w, &w->node[slot], j);
+}
+
+static inline int mpm__has_walls(const mpm_desc *d)
+{
+    int s, found = 0;
+    for (s = 0; s < 6; s++) found |= d->side[s] == MPM_SIDE_WALL;
+    return found;
 }
 
 /* 1 if a node lies at a rigid wall. */
@@ -2010,31 +2018,38 @@ static inline void mpm__settle_add(mpm_world *w, mpm_pair *p, int level, mpm_rea
     }
 }
 
+/* Parts the impulse of a held pair into compression along the normal and the rest, which the hold bears. Returns the
+   size of the rest. */
+static inline mpm_real mpm__borne(const mpm_pair *p, const mpm_real *j, mpm_real *rest)
+{
+    const mpm_real along = j[0] * p->normal[0] + j[1] * p->normal[1] + j[2] * p->normal[2];
+    mpm_real size = 0;
+    int d;
+    for (d = 0; d < 3; d++) {
+        rest[d] = j[d] - (along < 0 ? along * p->normal[d] : 0);
+        size += rest[d] * rest[d];
+    }
+    return mpm_sqrt(size);
+}
+
 /* Whether a pair is one body at a level: welded, or held by all of a bond that has not slipped. */
 static inline int mpm__is_one(const mpm_pair *p, int level)
 {
-    const mpm_real *j = p->impulse;
+    mpm_real rest[3];
     if (p->rule->law == MPM_CONTACT_WELD) return 1;
     if (!(p->hold >= 1)) return 0;
     if (!(p->limit > 0) || level == MPM__NEW) return 1;
-    return level == MPM__MAPPED &&
-           j[0] * j[0] + j[1] * j[1] + j[2] * j[2] < p->limit * p->limit * (1 - 64 * MPM_EPSILON);
+    return level == MPM__MAPPED && mpm__borne(p, p->impulse, rest) < p->limit * (1 - 64 * MPM_EPSILON);
 }
 
 /* What a held pair's whole impulse j may be: compression without limit, the rest as far as the hold bears. */
 static inline void mpm__bear(const mpm_pair *p, mpm_real *j)
 {
-    const mpm_real along = j[0] * p->normal[0] + j[1] * p->normal[1] + j[2] * p->normal[2];
-    const mpm_real push = along < 0 ? along : 0;
-    mpm_real pull[3], size = 0;
+    mpm_real rest[3], size;
     int d;
     if (!(p->limit > 0)) return;
-    for (d = 0; d < 3; d++) {
-        pull[d] = j[d] - push * p->normal[d];
-        size += pull[d] * pull[d];
-    }
-    size = mpm_sqrt(size);
-    for (d = 0; d < 3 && size > p->limit; d++) j[d] = push * p->normal[d] + pull[d] * (p->limit / size);
+    size = mpm__borne(p, j, rest);
+    for (d = 0; d < 3 && size > p->limit; d++) j[d] += rest[d] * (p->limit / size - 1);
 }
 
 /* 1 if a pair was pressed together at P(k+1), by more than round-off beside a cell per step. */
@@ -2107,7 +2122,8 @@ static inline int mpm__settles(const mpm_pair *p)
 #define MPM__SETTLE_SWEEPS 200
 
 /* Settles all pairs of a node at a level, [first, last): all of them seen from the same velocities, again and again
-   until nothing changes. So it does not matter how bodies are numbered. Of n bodies each pair goes 2/n of its way:
+   until nothing changes, or 200 times. So it does not matter how bodies are numbered. Of n bodies each pair goes 2/n
+   of its way:
    two stop each other at once. */
 static inline void mpm__settle_node(mpm_world *w, int32_t first, int32_t last, int level)
 {
@@ -2155,7 +2171,7 @@ static inline void mpm__apply_in_turn(mpm_world *w)
 static inline void mpm__apply_settled(mpm_world *w)
 {
     int32_t i;
-    for (i = 0; i < w->pairs; i++) w->pair[i].held = w->pair[i].hold >= 1;
+    for (i = 0; i < w->pairs; i++) w->pair[i].held = w->pair[i].hold >= 1 && mpm__settles(&w->pair[i]);
     mpm__settle(w, MPM__OLD);
     for (i = 0; i < w->pairs; i++) {
         mpm_pair *p = &w->pair[i];
@@ -2166,7 +2182,8 @@ static inline void mpm__apply_settled(mpm_world *w)
     for (i = 0; i < w->pairs; i++) {
         mpm_pair *p = &w->pair[i];
         mpm_real j[3];
-        if (!(p->hold > 0 && p->hold < 1) || p->rule->law >= MPM_CONTACT_WELD || mpm_pair_stick(w, p, j) > 0) continue;
+        if (!(p->hold > 0 && p->hold < 1) || p->rule->law >= MPM_CONTACT_WELD || mpm__pressed(w, p)) continue;
+        if (mpm_pair_stick(w, p, j) > 0) continue;
         p->held = 1;
         mpm__hold(p, j);
         mpm_pair_push(w, p, j);
@@ -2294,12 +2311,12 @@ MPM_API void mpm_musl(mpm_world *w)
     }
     mpm__account(w);
     mpm__account_gravity(w);
+    for (i = 0; i < w->nodes; i++)
+        if (w->node[i].flags) mpm__constrain(w, &w->node[i], w->node[i].velocity, NULL);
     if (w->desc.scheme == MPM_SCHEME_CONSISTENT) mpm__settle(w, MPM__MAPPED);
     for (i = 0; i < w->nodes; i++) {
         mpm_node *n = &w->node[i];
-        if (!n->flags) continue;
-        mpm__constrain(w, n, n->velocity, NULL);
-        mpm__walls_mapped(w, n);
+        if (n->flags) mpm__walls_mapped(w, n);
     }
 }
 
@@ -2865,8 +2882,10 @@ MPM_API int mpm_blobs(mpm_world *w, mpm_blob *blob)
     blob[n++] = mpm_blob_of("notices", &w->notices, sizeof w->notices);
     blob[n++] = mpm_blob_of("tally", w->tally, sizeof w->tally);
     blob[n++] = mpm_blob_of("held", &w->held, sizeof w->held);
-    for (b = 0; b < w->bodies; b++) /* first, count and active stand side by side */
+    for (b = 0; b < w->bodies; b++) { /* first, count and active stand side by side */
         blob[n++] = mpm_blob_of("points of body", &w->body[b].first, 3 * sizeof(int32_t));
+        blob[n++] = mpm_blob_of("mean mass", &w->body[b].point_mass, sizeof w->body[b].point_mass);
+    }
     return n;
 }
 
@@ -2882,6 +2901,7 @@ static inline mpm_status mpm__restored_counts(const mpm_world *w, mpm_fault *f)
                      (mpm_real)B->count, b);
         if (s == MPM_OK)
             s = mpm_want(B->active >= 0 && B->active <= B->count, f, "active points of body", (mpm_real)B->active, b);
+        if (s == MPM_OK) s = mpm_want(B->point_mass > 0, f, "mean mass of body", B->point_mass, b);
         if (s == MPM_OK) next += B->count;
     }
     if (s == MPM_OK) s = mpm_want(next == p->count, f, "points of all bodies", (mpm_real)next, -1);
@@ -3039,7 +3059,7 @@ static inline size_t mpm__layout_work(mpm_world *w, char *base, int32_t nodes)
     size_t reach = (size_t)w->support[0] * (size_t)w->support[1] * (size_t)w->support[2];
     w->node_capacity = w->run_capacity = nodes;
     w->pair_capacity = pairs;
-    w->touch_capacity = 2 * pairs;
+    w->touch_capacity = 2 * pairs + (mpm__has_walls(&w->desc) ? nodes : 0);
     w->node = (mpm_node *)mpm_carve(base, &used, n, sizeof(mpm_node));
     w->run = (mpm_run *)mpm_carve(base, &used, n, sizeof(mpm_run));
     w->slot = (int32_t *)mpm_carve(base, &used, mpm_size_mul(n, reach), sizeof(int32_t));
@@ -3264,14 +3284,15 @@ static inline void mpm__rule_drop(mpm_world *w, int32_t a, int32_t b)
 
 MPM_API mpm_status mpm_contact_set(mpm_world *w, int32_t a, int32_t b, const mpm_contact *rule)
 {
-    mpm_status s = mpm_contact_check(rule, &w->fault);
-    if (s == MPM_OK && rule->normal == MPM_NORMAL_LOGISTIC) s = mpm__plane_room(w);
+    const mpm_contact own = *rule; /* it may be one of the world's, which move */
+    mpm_status s = mpm_contact_check(&own, &w->fault);
+    if (s == MPM_OK && own.normal == MPM_NORMAL_LOGISTIC) s = mpm__plane_room(w);
     if (s != MPM_OK) return s;
     mpm__rule_drop(w, a, b);
     if ((s = mpm__room(w, 0, 0, 1, 0)) != MPM_OK) return s; /* none was dropped, or there is room */
     w->rule[w->rules].a = a;
     w->rule[w->rules].b = b;
-    w->rule[w->rules++].contact = *rule;
+    w->rule[w->rules++].contact = own;
     return MPM_OK;
 }
 
@@ -3375,9 +3396,11 @@ static inline int mpm__contains(const mpm_shape *s, const mpm_real *x, int flat,
     int d;
     if (s->kind == MPM_SHAPE_USER) return mpm__contains_user(s, x, flat, shrink);
     for (d = 0; d < 3; d++) {
-        mpm_real half = s->half[d] - shrink;
+        const mpm_real half = s->half[d] - shrink;
+        q[d] = 0;
+        if (d == 1 && flat) continue;
         if (half <= 0) return 0;
-        q[d] = (d == 1 && flat) ? 0 : (x[d] - s->center[d]) / half;
+        q[d] = (x[d] - s->center[d]) / half;
     }
     switch (s->kind) {
     case MPM_SHAPE_ELLIPSOID: return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] <= 1;
@@ -3557,47 +3580,50 @@ static inline uint8_t mpm__flags(const mpm_body_desc *b, const mpm_real *x, int 
     return (uint8_t)f;
 }
 
-/* How wide a lattice point's cube is along axis a, in spacings: 1, but for the layer next to a symmetry plane. At e
-   spacings from the plane its share reaches from there to half a spacing beyond the point, e + 1/2: a half on the
-   plane itself, and with what a layer behind the plane would have left on this side. */
-static inline mpm_real mpm__width(const mpm_desc *d, int a, mpm_real spacing, mpm_real x)
+/* How wide the cube of a shape's lattice point is along axis a, in spacings: 1, but for the layer next to a symmetry
+   plane. At e spacings from the plane it reaches from there to half a spacing beyond the point, e + 1/2: a half on the
+   plane itself; and with what the next layer, if the shape has one behind the plane, would have left on this side. */
+static inline mpm_real mpm__width(const mpm_desc *d, const mpm_shape *s, mpm_real spacing, const mpm_real *x, int a)
 {
-    const mpm_real depth[2] = {(x - d->origin[a]) / spacing, (mpm__grid_high(d, a) - x) / spacing};
+    const mpm_real depth[2] = {(x[a] - d->origin[a]) / spacing, (mpm__grid_high(d, a) - x[a]) / spacing};
     mpm_real width = 1;
-    int s;
-    for (s = 0; s < 2; s++)
-        if (d->side[2 * a + s] == MPM_SIDE_SYMMETRY && depth[s] < 1 - MPM__SNAP &&
-            mpm_fabs(depth[s] - MPM_R(0.5)) > MPM__SNAP)
-            width += depth[s] - MPM_R(0.5);
+    int i;
+    for (i = 0; i < 2; i++) {
+        const mpm_real beyond = depth[i] - MPM_R(0.5);
+        mpm_real next[3] = {x[0], x[1], x[2]};
+        next[a] += i ? spacing : -spacing;
+        if (d->side[2 * a + i] != MPM_SIDE_SYMMETRY || depth[i] > 1 - MPM__SNAP) continue;
+        if (beyond < -MPM__SNAP || (beyond > MPM__SNAP && mpm__contains(s, next, mpm__flat(d), 0))) width += beyond;
+    }
     return width;
 }
 
 /* The share of a full point that symmetry planes leave at x; along the radius of rings it is in the ring's area. */
-static inline mpm_real mpm__share(const mpm_desc *d, mpm_real spacing, const mpm_real *x)
+static inline mpm_real mpm__share(const mpm_desc *d, const mpm_shape *s, mpm_real spacing, const mpm_real *x)
 {
     mpm_real share = 1;
     int a;
     for (a = d->geometry == MPM_AXISYMMETRIC ? 2 : 0; a < 3; a++)
-        if (!(a == 1 && mpm__flat(d))) share *= mpm__width(d, a, spacing, x[a]);
+        if (!(a == 1 && mpm__flat(d))) share *= mpm__width(d, s, spacing, x, a);
     return share;
 }
 
 /* Half the cross-section of a ring through x over pi and the spacing: between x - h and x + h it is 2 x h; next to a
    symmetry plane, from there. */
-static inline mpm_real mpm__ring(const mpm_desc *d, mpm_real spacing, mpm_real x)
+static inline mpm_real mpm__ring(const mpm_desc *d, const mpm_shape *s, mpm_real spacing, const mpm_real *x)
 {
-    const mpm_real width = mpm__width(d, 0, spacing, x), outer = x + spacing / 2;
+    const mpm_real width = mpm__width(d, s, spacing, x, 0), outer = x[0] + spacing / 2;
     const mpm_real inner = outer - width * spacing;
-    return width < 1 || width > 1 ? (outer * outer - inner * inner) / (2 * spacing) : x;
+    return width < 1 || width > 1 ? (outer * outer - inner * inner) / (2 * spacing) : x[0];
 }
 
 /* Mass that a lattice point stands for: a cube, a unit-depth square, or a ring. */
 static inline mpm_real mpm__point_mass(const mpm_desc *d, const mpm_body_desc *b, const mpm_real *x)
 {
-    mpm_real square = b->density * b->spacing * b->spacing, share = mpm__share(d, b->spacing, x);
+    mpm_real square = b->density * b->spacing * b->spacing, share = mpm__share(d, &b->shape, b->spacing, x);
     if (d->geometry == MPM_3D) return square * b->spacing * share;
     if (d->geometry == MPM_PLANE_STRAIN) return square * share;
-    return 2 * MPM_PI * mpm__ring(d, b->spacing, x[0]) * square * share;
+    return 2 * MPM_PI * mpm__ring(d, &b->shape, b->spacing, x) * square * share;
 }
 
 /* The share of a shape that the symmetry planes leave in the grid. */
@@ -3609,7 +3635,7 @@ static inline mpm_real mpm__kept(const mpm_desc *d, const mpm_body_desc *b)
     mpm_real x[3];
     int a;
     for (a = 0; a < 6; a++) open.side[a] = MPM_SIDE_OPEN;
-    while (mpm__lattice_next(&l, d, &b->shape, x)) kept += (double)mpm__share(d, b->spacing, x);
+    while (mpm__lattice_next(&l, d, &b->shape, x)) kept += (double)mpm__share(d, &b->shape, b->spacing, x);
     return (mpm_real)kept / (mpm_real)mpm_shape_count(&open, &b->shape, b->spacing);
 }
 
@@ -3789,22 +3815,24 @@ static inline mpm_status mpm__count_inside(const mpm_desc *d, const mpm_body_des
 
 MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *desc)
 {
-    const int faces = desc->shape.kind == MPM_SHAPE_CYLINDER || desc->shape.kind == MPM_SHAPE_BOX;
+    const mpm_body_desc own = *desc; /* it may be one of the world's, which move */
+    const int faces = own.shape.kind == MPM_SHAPE_CYLINDER || own.shape.kind == MPM_SHAPE_BOX;
     mpm_fault *f = &w->fault;
     mpm_body b;
     mpm_status s;
     int32_t other, count;
     memset(&b, 0, sizeof b);
-    if ((s = mpm__body_check(w, desc, f)) != MPM_OK || (s = mpm__shape_check(desc, f)) != MPM_OK ||
-        (s = mpm__absorb_check(desc, faces, f)) != MPM_OK)
+    if ((s = mpm__body_check(w, &own, f)) != MPM_OK || (s = mpm__shape_check(&own, f)) != MPM_OK ||
+        (s = mpm__absorb_check(&own, faces, f)) != MPM_OK)
         return s;
-    if ((other = mpm__point_inside(w, &desc->shape)) >= 0)
+    if ((other = mpm__point_inside(w, &own.shape)) >= 0)
         return mpm_fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
-    if ((s = mpm__count_inside(&w->desc, desc, &count, f)) != MPM_OK) return s;
-    if (count == 0) return mpm_fail(f, MPM_ERR_ARGUMENT, "shape (holds no point at spacing)", desc->spacing, -1);
+    if ((s = mpm__count_inside(&w->desc, &own, &count, f)) != MPM_OK) return s;
+    if (own.id > 2147483647 - count) return mpm_fail(f, MPM_ERR_ARGUMENT, "id", (mpm_real)own.id, -1);
+    if (count == 0) return mpm_fail(f, MPM_ERR_ARGUMENT, "shape (holds no point at spacing)", own.spacing, -1);
     if ((s = mpm__room(w, count, 1, 0, 0)) != MPM_OK) return s;
-    b.desc = *desc;
-    mpm__areas(&w->desc, &b);
+    b.desc = own;
+    if (own.absorb) mpm__areas(&w->desc, &b);
     if ((s = mpm__fill(w, &b, f)) != MPM_OK) return s;
     return mpm__body_join(w, &b);
 }
@@ -3820,8 +3848,11 @@ static inline mpm_real mpm__given(const mpm_real *array, int32_t i, mpm_real oth
 static inline mpm_real mpm__cloud_mass(const mpm_world *w, const mpm_body_desc *d, const mpm_cloud *c, int32_t i,
                                        const mpm_real *x)
 {
+    const mpm_real square = d->density * d->spacing * d->spacing;
     if (c->mass) return c->mass[i];
-    return c->volume ? c->volume[i] * d->density : mpm__point_mass(&w->desc, d, x);
+    if (c->volume) return c->volume[i] * d->density;
+    if (w->desc.geometry == MPM_PLANE_STRAIN) return square;
+    return square * (w->desc.geometry == MPM_3D ? d->spacing : 2 * MPM_PI * x[0]);
 }
 
 /* Where point i of a cloud lies. */
@@ -3885,17 +3916,18 @@ static inline mpm_shape mpm__cloud_extent(const mpm_world *w, const mpm_cloud *c
 
 MPM_API mpm_status mpm_body_add_points(mpm_world *w, const mpm_body_desc *desc, const mpm_cloud *c)
 {
+    const mpm_body_desc own = *desc; /* it may be one of the world's, which move */
     mpm_fault *f = &w->fault;
     mpm_body b;
     mpm_status s;
     memset(&b, 0, sizeof b);
-    if ((s = mpm__body_check(w, desc, f)) != MPM_OK || (s = mpm__absorb_check(desc, 0, f)) != MPM_OK ||
-        (s = mpm__cloud_check(w, w->bodies, desc, c, f)) != MPM_OK || (s = mpm__room(w, c->count, 1, 0, 0)) != MPM_OK)
+    if ((s = mpm__body_check(w, &own, f)) != MPM_OK || (s = mpm__absorb_check(&own, 0, f)) != MPM_OK ||
+        (s = mpm__cloud_check(w, w->bodies, &own, c, f)) != MPM_OK || (s = mpm__room(w, c->count, 1, 0, 0)) != MPM_OK)
         return s;
-    b.desc = *desc;
-    b.desc.shape = mpm__cloud_extent(w, c, desc->spacing);
+    b.desc = own;
+    b.desc.shape = mpm__cloud_extent(w, c, own.spacing);
     for (b.count = 0; b.count < c->count; b.count++)
-        mpm__put_cloud(w, desc, c, b.count, w->points.count + b.count);
+        mpm__put_cloud(w, &own, c, b.count, w->points.count + b.count);
     return mpm__body_join(w, &b);
 }
 

@@ -1022,6 +1022,7 @@ static inline mpm_status mpm__spray_check_numbers(const mpm_spray_desc *d, mpm_f
 MPM_API mpm_status mpm_spray_check(const mpm_spray_desc *d, mpm_fault *fault)
 {
     mpm_status s;
+    if (!d) return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (NULL)", 0, -1);
     if (d->mark != MPM_MARK)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_spray_desc_default)", (mpm_real)d->mark, -1);
     if ((s = mpm__spray_check_solid(&d->particle, fault)) != MPM_OK) return s;
@@ -1229,6 +1230,12 @@ MPM_API void mpm_spray_free(mpm_spray *s)
     s->live = s->deposited = 0;
 }
 
+/* A spray that was never prepared, or has been freed, has no arrays. */
+static inline mpm_status mpm__spray_ready(mpm_spray *s)
+{
+    return s->memory ? MPM_OK : mpm_fail(&s->fault, MPM_ERR_ARGUMENT, "spray (not from mpm_spray_init)", 0, -1);
+}
+
 static inline mpm_status mpm__spray_check_ball(const mpm_spray_ball *b, mpm_fault *f)
 {
     mpm__spray_rule r[5];
@@ -1261,8 +1268,9 @@ static inline void mpm__spray_put(mpm_spray *s, int32_t i, const mpm_spray_ball 
 
 MPM_API mpm_status mpm_spray_add(mpm_spray *s, const mpm_spray_ball *ball)
 {
-    mpm_status status = mpm__spray_check_ball(ball, &s->fault);
+    mpm_status status = mpm__spray_ready(s);
     int32_t i = s->live;
+    if (status == MPM_OK) status = mpm__spray_check_ball(ball, &s->fault);
     if (status != MPM_OK) return status;
     if (s->live + s->deposited >= s->desc.capacity) /* so that the deposit can never overflow */
         return mpm_fail(&s->fault, MPM_ERR_FULL, "capacity", (mpm_real)s->desc.capacity, -1);
@@ -1281,9 +1289,9 @@ static inline void mpm__spray_feed(mpm_spray *s)
     const mpm_spray_desc *d = &s->desc;
     double per_step = (double)d->dt * (double)d->feed / d->batch;
     int64_t due = (int64_t)(((double)s->tally.step + 1e-3) * per_step) + 1;
-    while (s->tally.batches < due) {
-        s->tally.batches++;
-        s->tally.pending += d->batch;
+    if (s->tally.batches < due) {
+        s->tally.pending += (due - s->tally.batches) * d->batch;
+        s->tally.batches = due;
     }
     if (d->total > 0 && s->tally.injected + s->tally.pending > d->total)
         s->tally.pending = d->total > s->tally.injected ? d->total - s->tally.injected : 0;
@@ -1336,6 +1344,7 @@ static inline int32_t mpm__spray_near_inlet(mpm_spray *s)
 MPM_API mpm_status mpm_spray_inject(mpm_spray *s)
 {
     int32_t near_count;
+    if (mpm__spray_ready(s) != MPM_OK) return MPM_ERR_ARGUMENT;
     if (s->desc.batch == 0) return MPM_OK;
     mpm__spray_feed(s);
     if (s->tally.pending == 0) return MPM_OK;
@@ -1508,6 +1517,7 @@ MPM_API void mpm_spray_bin(mpm_spray *s)
     mpm_real fastest = 0, dt = s->desc.dt, largest = 0;
     int32_t i;
     int k;
+    if (!s->memory) return;
     for (i = 0; i < s->live; i++) {
         for (k = 0; k < 3; k++) s->middle[3 * i + k] = s->x[3 * i + k] + dt / 2 * s->path[3 * i + k];
         fastest = mpm__spray_max(fastest, mpm__spray_dot(s->path + 3 * i, s->path + 3 * i));
@@ -2216,8 +2226,10 @@ static inline mpm_status mpm__spray_restored_particles(const mpm_spray *s, mpm_f
 
 MPM_API mpm_status mpm_spray_restored(mpm_spray *s, const mpm_blob *blob)
 {
-    mpm_status status = mpm__spray_restored_counts(s, &s->fault);
+    mpm_status status = mpm__spray_ready(s);
     int32_t i;
+    if (status != MPM_OK) return status;
+    status = mpm__spray_restored_counts(s, &s->fault);
     if (status == MPM_OK) status = mpm__spray_restored_sizes(s, blob, &s->fault);
     if (status == MPM_OK) status = mpm__spray_restored_particles(s, &s->fault);
     if (status != MPM_OK) {

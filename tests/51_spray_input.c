@@ -215,8 +215,41 @@ static void test_restored(void)
     CHECK_TRUE("... is named", !strcmp(s.fault.field, "desc (not from mpm_spray_desc_default)"));
 }
 
+/* A spray that was never prepared answers with a status; a description that is not there too; a feed of a thousand
+   million particles a step takes no longer than another. */
+static void test_unprepared(void)
+{
+    mpm_spray_ball b;
+    mpm_blob blob[MPM_SPRAY_BLOBS];
+    mpm_spray_metrics m;
+    mpm_spray_desc d = mpm_spray_desc_default();
+    mpm_spray s;
+    memset(&b, 0, sizeof b);
+    CHECK_EQUAL("no description", mpm_spray_check(NULL, NULL), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("... has no size", mpm_spray_bytes(NULL), 0);
+    CHECK_EQUAL("... makes no spray", mpm_spray_init(&s, NULL, NULL, 0), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... is named", !strcmp(s.fault.field, "desc (NULL)"));
+    CHECK_EQUAL("a step of it", mpm_spray_step(&s), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... is named", !strcmp(s.fault.field, "spray (not from mpm_spray_init)"));
+    CHECK_EQUAL("a particle for it", mpm_spray_add(&s, &b), MPM_ERR_ARGUMENT);
+    mpm_spray_blobs(&s, blob);
+    CHECK_EQUAL("a state for it", mpm_spray_restored(&s, blob), MPM_ERR_ARGUMENT);
+    mpm_spray_bin(&s);
+    mpm_spray_measure(&s, &m);
+    CHECK_EQUAL("it holds nothing", m.injected + m.in_flight, 0);
+    d.capacity = 100;
+    d.batch = 1;
+    d.feed = MPM_R(1.9e14);
+    done("init", mpm_spray_init(&s, &d, NULL, 0));
+    s.tally.step = 1000000; /* 1e15 batches are due */
+    CHECK_EQUAL("a huge feed fills it", mpm_spray_step(&s), MPM_ERR_FULL);
+    mpm_spray_free(&s);
+    CHECK_EQUAL("a step of a freed one", mpm_spray_step(&s), MPM_ERR_ARGUMENT);
+}
+
 int main(void)
 {
+    test_unprepared();
     test_values();
     test_planes();
     test_run();

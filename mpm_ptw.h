@@ -1324,11 +1324,13 @@ MPM_API mpm_status mpm_material_pressure(const mpm_material *m, mpm_real density
 MPM_API mpm_status mpm_material_hugoniot_pressure(const mpm_material *m, mpm_real density,
                                                   mpm_real *pressure, mpm_fault *fault)
 {
-    mpm_real mu = density / m->density - 1;
+    mpm_real mu = density / m->density - 1, p;
     mpm_status status = mpm__ptw_eos_range(m, density, -1, fault);
     if (status < 0) return status;
     if (m->eos == MPM_EOS_USER) return mpm__ptw_hugoniot_user(m, density, pressure, fault);
-    *pressure = m->eos == MPM_EOS_LINEAR ? mpm__ptw_bulk_modulus(m) * mu : mpm__ptw_hugoniot(m, mu);
+    p = m->eos == MPM_EOS_LINEAR ? mpm__ptw_bulk_modulus(m) * mu : mpm__ptw_hugoniot(m, mu);
+    if (!mpm_finite(p)) return mpm_fail(fault, MPM_ERR_STATE, "density of point", density, -1);
+    *pressure = p;
     return MPM_OK;
 }
 

@@ -4,6 +4,7 @@
 #include "strength_reference.h"
 #include "check.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -323,6 +324,19 @@ static void test_hugoniot(void)
                    2700 * 5386.0 * 5386.0 * (2600 / 2700.0 - 1) + 1.97 * 2700 * 1000, 100 * (double)MPM_EPSILON);
 }
 
+/* A finite density of which the linear law makes an infinite pressure. */
+static void test_eos_extreme(void)
+{
+    mpm_material m = preset("al", "elastic");
+    const mpm_real huge = sizeof(mpm_real) == 8 ? (mpm_real)DBL_MAX : (mpm_real)FLT_MAX;
+    mpm_fault f = no_fault;
+    mpm_real p = 7;
+    CHECK_EQUAL("a density far too large", mpm_material_hugoniot_pressure(&m, huge, &p, &f), MPM_ERR_STATE);
+    CHECK_TRUE("... names it", strstr(f.field, "density") && f.value == huge);
+    CHECK_TRUE("... refused for the energy's pressure too", mpm_material_pressure(&m, huge, 0, &p, &f) < 0);
+    CHECK_TRUE("... and leaves the pressure alone", p == 7);
+}
+
 static void test_eos_faults(void)
 {
     mpm_material m = preset("al", "ptw");
@@ -546,6 +560,7 @@ int main(void)
     test_monotone();
     test_hugoniot();
     test_eos_faults();
+    test_eos_extreme();
     test_waves();
     test_user_eos();
     test_presets();

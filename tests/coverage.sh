@@ -13,15 +13,19 @@ for t in $1; do
     timeout 1200 "$dir/$name" >"$dir/$name.log" 2>&1 || echo "$name: $(tail -n 1 "$dir/$name.log")"
 done
 # a line or branch counts if any test reached it
-for h in mpm*.h; do
-    for t in $dir/*.gcda; do
-        (cd $dir && gcov -b -c -s "$OLDPWD" -r -o . "$(basename "$t")" >/dev/null 2>&1; [ -f "$h.gcov" ] && cat "$h.gcov")
-    done | awk -v h="$h" '
-        /^ *[0-9#=-]+\*?: *[0-9]+:/ { split($0, f, ":"); line = f[2] + 0; n = f[1]; gsub(/[ *]/, "", n); k = 0
-            if (n != "-") { seen[line] = 1; if (n !~ /#|=/) hit[line] = 1 } }
-        /^branch/ { key = line ":" k++; branch[key] = 1; if ($0 ~ /taken [1-9]/) taken[key] = 1 }
-        END { for (l in seen) { lines++; if (l in hit) run++ }
-              for (b in branch) { branches++; if (b in taken) went++ }
-              if (lines) printf "%-16s lines %5.1f %% of %d, branches %5.1f %% of %d\n", h, 100 * run / lines, lines,
-                                100 * went / (branches ? branches : 1), branches }'
-done
+for t in $dir/*.gcda; do gcov -b -c -t "$t" 2>/dev/null; done | awk '
+    /^ *-: *0:Source:/ { sub(/.*Source:/, ""); h = /^mpm[a-z_]*\.h$/ ? $0 : "" }
+    h == "" { next }
+    /^ *[0-9#=*-]+: *[0-9]+:/ {
+        split($0, f, ":"); n = f[1]; gsub(/[ *]/, "", n); at = h ":" f[2] + 0; k = 0
+        if (n == "-") next
+        if (!(at in seen)) { seen[at] = 1; lines[h]++ }
+        if (n !~ /[#=]/ && !(at in hit)) { hit[at] = 1; reached[h]++ }
+    }
+    /^branch/ {
+        b = at ":" k++
+        if (!(b in branch)) { branch[b] = 1; branches[h]++ }
+        if (/taken [1-9]/ && !(b in taken)) { taken[b] = 1; went[h]++ }
+    }
+    END { for (h in lines) printf "%-16s lines %5.1f %% of %d, branches %5.1f %% of %d\n", h, 100 * reached[h] / lines[h],
+                                  lines[h], 100 * went[h] / (branches[h] ? branches[h] : 1), branches[h] }' | sort

@@ -36,7 +36,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     enum { N = 3 };
     fuzz f = {data, size};
     const mpm_units units = mpm_units_um_us_ng();
-    mpm_real strain[6][N], spin[3][N], stress[6][N], rho[N], q[5][N];
+    mpm_real strain[6][N], spin[3][N], stress[6][N], rho[N], q[5][N], user[N] = {0};
     int64_t tally[MPM_TALLIES] = {0};
     mpm_material_state at;
     mpm_fault fault = {MPM_OK, NULL, 0, -1};
@@ -76,6 +76,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     b.plastic_strain = q[2];
     b.plastic_rate = q[3];
     b.plastic_work = q[4];
+    if (fuzz_byte(&f) < 200) b.user[0] = user; /* the staged return wants one */
     b.tally = tally;
     b.fault = &fault;
     at.plastic_strain = q[2][0];
@@ -90,7 +91,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fault.field = NULL;
     s = mpm_material_stress(&m, &b);
     if (s < 0) {
-        FUZZ_WANT(fault.field && fault.index >= 0 && fault.index < N);
+        FUZZ_WANT(fault.field && fault.index >= -1 && fault.index < N);
         return 0;
     }
     for (i = 0; i < N; i++) {

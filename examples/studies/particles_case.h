@@ -345,14 +345,33 @@ static inline int particles_pairs(const impact *s, const particles_case *q)
     return mpm_io_csv_end(&t, &fault) >= 0 || report(&fault, path);
 }
 
-/* summary.json */
+/* The checksum of both tables, which the summary keeps. */
+static inline const char *particles_sum(const particles_case *q, char sum[STUDY_HASH_TEXT])
+{
+    static const char *const name[2] = {"particles.csv", "pairs.csv"};
+    char path[PATH_BYTES], one[2] = "";
+    uint64_t h = STUDY_HASH;
+    int k, c;
+    for (k = 0; k < 2; k++) {
+        FILE *f = fopen(file_in(q->out.folder, name[k], path, sizeof path), "rb");
+        while (f && (c = fgetc(f)) != EOF) {
+            one[0] = (char)c;
+            h = study_hash(h, one);
+        }
+        h = study_hash(h, f && !ferror(f) ? "\n" : "none");
+        if (f) fclose(f);
+    }
+    return study_hash_text(h, sum);
+}
+
+/* summary.json, which is written last */
 static inline int particles_summary(const impact *s, const particles_case *q, const particle_report *r,
                                     const option *o, int n)
 {
     const mpm_world *w = &s->world;
     const mpm_totals sums = mpm_body_totals(w, -1);
     long fates[PARTICLE_FATES] = {0}, a;
-    char path[PATH_BYTES];
+    char path[PATH_BYTES], sum[STUDY_HASH_TEXT];
     mpm_fault fault;
     mpm_io_json j;
     int k;
@@ -373,6 +392,7 @@ static inline int particles_summary(const impact *s, const particles_case *q, co
     mpm_io_json_integer(&j, "floor_hits", (long long)w->tally[MPM_TALLY_BOND_FLOOR]);
     mpm_io_json_integer(&j, "bond_increments", (long long)w->tally[MPM_TALLY_BOND_GROWTH]);
     mpm_io_json_number(&j, "cpu_seconds", q->out.cpu);
+    mpm_io_json_string(&j, "tables", particles_sum(q, sum)); /* their checksum */
     options_json(&j, o, n);
     return mpm_io_json_end(&j, &fault) >= 0 || report(&fault, path);
 }
@@ -397,6 +417,16 @@ static inline int particles_same_build(const char *summary)
            (digits ? strtol(digits, NULL, 10) : 17) == MPM_DIGITS;
 }
 
+/* Whether the tables are those that the summary was written with; else says so. */
+static inline int particles_whole(const particles_case *q, const char *summary)
+{
+    char sum[STUDY_HASH_TEXT];
+    const char *at = json_value(summary, "tables");
+    if (at && *at == '"' && !strncmp(at + 1, particles_sum(q, sum), STUDY_HASH_TEXT - 1)) return 1;
+    fprintf(stderr, "%s: the tables are damaged: the scene is run again\n", q->out.folder);
+    return 0;
+}
+
 /* Whether the folder holds this very scene, finished: version, number type and options in its summary, the centres
    in its table. */
 static inline int particles_finished(const particles_case *q)
@@ -413,7 +443,7 @@ static inline int particles_finished(const particles_case *q)
     text_in(file_in(q->out.folder, "summary.json", path, sizeof path), text, sizeof text);
     count = json_value(text, "particles");
     if (!count || strtol(count, NULL, 10) != q->count || !particles_same_build(text) ||
-        !options_match(text, o, plain, n))
+        !options_match(text, o, plain, n) || !particles_whole(q, text))
         return 0;
     text_in(file_in(q->out.folder, "particles.csv", path, sizeof path), text, sizeof text);
     row = strstr(text, "height_um\n"); /* ends the line of the names */

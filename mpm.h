@@ -561,8 +561,8 @@ typedef struct mpm_cloud {
     const mpm_real *x[3];     /* position; x[1] may be NULL in two dimensions */
     const mpm_real *v[3];     /* velocity; NULL: the body's */
     const mpm_real *mass;     /* in axisymmetry of the whole ring; NULL: volume times the body's density */
-    const mpm_real *volume;   /* NULL: a whole cube, square or ring section of the body's spacing. Where mass and volume are
-                                 given, the density is the one over the other, else the body's */
+    const mpm_real *volume;   /* NULL: a whole cube, square or ring section of the body's spacing. Where mass and
+                                 volume are given, the density is the one over the other, else the body's */
     const uint8_t *flags;     /* MPM_POINT_SURFACE ...; NULL: 0, so that none bonds */
 } mpm_cloud;
 
@@ -3726,7 +3726,7 @@ static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
     mpm_real x[3];
     while (mpm__lattice_next(&l, &w->desc, &d->shape, x)) {
         const mpm_real mass = mpm__point_mass(&w->desc, d, x);
-        if (w->desc.geometry == MPM_AXISYMMETRIC && mass > 0 && !(x[0] > 0)) x[0] = d->spacing / 3; /* disc's middle */
+        mpm__off_axis(&w->desc, d->spacing, x);
         if ((s = mpm__place_check(w, w->bodies, x, w->bodies, f)) != MPM_OK) return s;
         mpm__put_point(w, d, i++, x, mass, mpm__flags(d, x, mpm__flat(&w->desc)));
     }
@@ -3796,6 +3796,14 @@ static inline mpm_status mpm__body_join(mpm_world *w, mpm_body *b)
     return s;
 }
 
+/* A lattice point on the axis is a disc, half a spacing wide: it goes to the middle of its mass, for a ring needs a
+   radius. */
+static inline void mpm__off_axis(const mpm_desc *d, mpm_real spacing, mpm_real *x)
+{
+    if (d->geometry == MPM_AXISYMMETRIC && d->side[0] == MPM_SIDE_SYMMETRY && !(x[0] < 0) && !(x[0] > 0))
+        x[0] = spacing / 3;
+}
+
 /* How many points a body will have; it ends at the first that lies outside the grid, so that a shape far larger than
    the grid is not walked through. */
 static inline mpm_status mpm__count_inside(const mpm_desc *d, const mpm_body_desc *b, int32_t *count, mpm_fault *f)
@@ -3806,8 +3814,9 @@ static inline mpm_status mpm__count_inside(const mpm_desc *d, const mpm_body_des
     if (!mpm__countable(d, &b->shape, b->spacing)) return MPM_OK;
     l = mpm__lattice_begin(d, &b->shape, b->spacing);
     while (mpm__lattice_next(&l, d, &b->shape, x)) {
-        const int a = mpm__axis_outside(d, x);
-        if (a >= 0) return mpm__outside(a, x, *count, f);
+        int a;
+        mpm__off_axis(d, b->spacing, x);
+        if ((a = mpm__axis_outside(d, x)) >= 0) return mpm__outside(a, x, *count, f);
         ++*count;
     }
     return MPM_OK;

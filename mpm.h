@@ -3716,6 +3716,14 @@ static inline mpm_status mpm__place_check(const mpm_world *w, int32_t own, const
     return MPM_OK;
 }
 
+/* A lattice point on the axis is a disc, half a spacing wide: it goes to the middle of its mass, for a ring needs a
+   radius. */
+static inline void mpm__off_axis(const mpm_desc *d, mpm_real spacing, mpm_real *x)
+{
+    if (d->geometry == MPM_AXISYMMETRIC && d->side[0] == MPM_SIDE_SYMMETRY && !(x[0] < 0) && !(x[0] > 0))
+        x[0] = spacing / 3;
+}
+
 /* Writes the points of b behind those in the world, without counting them in. */
 static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
 {
@@ -3794,14 +3802,6 @@ static inline mpm_status mpm__body_join(mpm_world *w, mpm_body *b)
     w->points.count -= b->count;
     w->next_id = next_id;
     return s;
-}
-
-/* A lattice point on the axis is a disc, half a spacing wide: it goes to the middle of its mass, for a ring needs a
-   radius. */
-static inline void mpm__off_axis(const mpm_desc *d, mpm_real spacing, mpm_real *x)
-{
-    if (d->geometry == MPM_AXISYMMETRIC && d->side[0] == MPM_SIDE_SYMMETRY && !(x[0] < 0) && !(x[0] > 0))
-        x[0] = spacing / 3;
 }
 
 /* How many points a body will have; it ends at the first that lies outside the grid, so that a shape far larger than

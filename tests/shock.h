@@ -117,6 +117,7 @@ static inline mpm_status shock_begin(shock *s, mpm_world *w)
     int k;
     d.geometry = MPM_PLANE_STRAIN;
     d.basis = s->basis;
+    d.scheme = MPM_SCHEME_THESIS;
     d.cell = 1;
     d.cells[2] = 2 * (s->cells + margin);
     d.origin[2] = -(mpm_real)(s->cells + margin);

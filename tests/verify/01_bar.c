@@ -27,6 +27,7 @@ static void bar_begin(mpm_world *w, mpm_material *m, double length, double gap, 
     mpm_body_desc b = scene_body(m, box, cell / 2, 0);
     d.geometry = MPM_PLANE_STRAIN;
     d.basis = basis;
+    d.scheme = MPM_SCHEME_THESIS;
     d.side[0] = end;
     d.side[4] = d.side[5] = MPM_SIDE_SYMMETRY;
     b.stress = stress;

@@ -30,6 +30,7 @@ static void disks_begin(mpm_world *w, mpm_material *m, int n, const method *how)
     mpm_body_desc b = scene_body(m, mpm_sphere(MPM_R(0.25), 0, MPM_R(0.25), (mpm_real)radius), cell / 2, speed);
     d.geometry = MPM_PLANE_STRAIN;
     d.basis = how->basis;
+    d.scheme = MPM_SCHEME_THESIS;
     d.contact.law = how->law;
     d.contact.touch = how->points;
     if (how->points) d.contact.normal = MPM_NORMAL_LOGISTIC;

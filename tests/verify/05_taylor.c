@@ -22,6 +22,7 @@ static taylor_result run(const taylor_case *c)
     int ok = 1;
     memset(&r, 0, sizeof r);
     if (!taylor_begin(&s, c, message, sizeof message)) return r;
+    s.world.desc.scheme = MPM_SCHEME_THESIS;
     while (ok && s.world.steps < s.steps) ok = taylor_step(&s) == MPM_OK; /* a retired point is a failure too */
     if (ok) taylor_measure(&s, c, NULL, &r);
     mpm_free(&s.world);

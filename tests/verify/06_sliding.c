@@ -40,6 +40,7 @@ static void incline_begin(mpm_world *w, mpm_material *m, rider what, ground on, 
     mpm_body_desc b = scene_body(m, mpm_box(MPM_R(0.5), 0, 0, MPM_R(2.5), 1, 1), cell / 2, 0), slab = b;
     d.geometry = what == BALL ? MPM_3D : MPM_PLANE_STRAIN;
     d.basis = MPM_GIMP;
+    d.scheme = MPM_SCHEME_THESIS;
     d.side[2] = MPM_SIDE_SYMMETRY;
     d.side[4] = on == WALL ? MPM_SIDE_WALL : MPM_SIDE_FIXED;
     d.wall_friction = d.contact.friction = (mpm_real)mu;
@@ -174,6 +175,7 @@ static impact hertz(ground on, int n, double v)
     int i, last = 0;
     d.geometry = MPM_AXISYMMETRIC;
     d.basis = MPM_GIMP;
+    d.scheme = MPM_SCHEME_THESIS;
     d.side[0] = MPM_SIDE_SYMMETRY;
     if (on == WALL) d.side[4] = MPM_SIDE_WALL;
     meet(&d, on);

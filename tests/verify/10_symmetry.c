@@ -58,6 +58,7 @@ static mpm_desc grid_of(const telling *t, double length)
     for (a = 0; a < 2; a++)
         if (t->mirrors > 1 - a) d.side[2 * t->axis[a] + (t->sign[a] < 0)] = MPM_SIDE_SYMMETRY;
     d.basis = t->basis;
+    d.scheme = MPM_SCHEME_THESIS;
     d.contact.normal = t->normal;
     d.contact.friction = MPM_R(0.2);
     return d;

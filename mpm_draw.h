@@ -740,10 +740,9 @@ MPM_API mpm_draw_color mpm_draw_map_color(mpm_draw_map map, double t)
         {0x2c274d, 0x542b67, 0x882375, 0xbb1263, 0xde2843, 0xf14e38, 0xff702c, 0xff963a, 0xffb851, 0xffd580, 0xfff0c2},
         {0x055987, 0x0177b3, 0x3a95d5, 0x83b2e0, 0xb8cfea, 0xf4eceb, 0xecc4be, 0xe09c93, 0xd1756a, 0xbe4c44, 0xa02626}};
     int k;
-    if (t != t || (unsigned)map > 2) return 0x9aa0a6;
+    if (t != t || (unsigned)map > 2) return 0x9aa0a6; /* grey: no number, or no such map */
     t = 10 * (t < 0 ? 0 : t > 1 ? 1 : t);
     k = t < 10 ? (int)t : 9;
-    if ((unsigned)map >= 3) map = MPM_DRAW_DEEP;
     return mpm__draw_blend(points[map][k], points[map][k + 1], t - k);
 }
 

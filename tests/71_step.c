@@ -165,6 +165,7 @@ static void beside_textbook(void)
     mpm_world w;
     int32_t i;
     int k;
+    d.scheme = MPM_SCHEME_THESIS;
     d.side[4] = MPM_SIDE_FIXED;
     mpm_init(&w, &d, NULL, 0);
     CHECK_EQUAL("textbook: the ball", mpm_body_add(&w, &ball), MPM_OK);

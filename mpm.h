@@ -12,8 +12,8 @@
    WHAT IT DOES NOT DO
      No heat conduction, no fracture, no oxide film, no implicit time integration, no threads,
      no adaptive grid. It never prints, exits or aborts: every routine that can fail returns an mpm_status and
-     leaves the reason in an mpm_fault. It allocates only where it was given no memory: in mpm_init, when bodies
-     are added, and in mpm_locate when the bodies spread over more nodes than there is room for.
+     leaves the reason in an mpm_fault. It allocates only where it was given no memory: in mpm_init, when bodies,
+     points, rules or fields are added, and in mpm_locate when the bodies spread over more nodes than there is room for.
 
    A COMPLETE PROGRAM
        #define MPM_IMPLEMENTATION
@@ -40,7 +40,7 @@
      the step                  mpm_step = locate, p2g, forces, grid_update, contact_find, contact_apply, g2p,
                                musl, stress, move
      between the phases        mpm_support_of, mpm_push, mpm_node_push, mpm_pair_push: what extensions use
-     looking at it             mpm_body_totals
+     looking at it, restart    mpm_body_totals; mpm_blobs, mpm_restored
      implementation            in the order of the step; then locate, memory, shapes, bodies, checks
 
    CONFIGURATION (define before including)
@@ -71,7 +71,7 @@
      slot         a node as one body sees it: world.node[slot]. Several bodies at a node have a slot each, in a
                   chain from world.head.
      pair         two slots of one node, so two bodies that meet there.
-     touch        what a slot carries besides where bodies meet.
+     touch        what a slot carries besides where bodies meet, or meet a wall.
      base         the lowest node that a point touches.
      run          consecutive points of a body with the same base; they share their nodes.
      piece, lane  up to 32 points of a run, swept together; a lane is one of them.
@@ -364,7 +364,7 @@ typedef struct mpm_block {
 #define MPM_TALLIES 16
 
 /* A constitutive update: material points to the caller's parameters. Returns a status; a negative
-   one stops the step, a positive one is counted and passed on. */
+   one stops the step, a positive one is counted in world.notices. */
 typedef mpm_status (*mpm_stress_fn)(const void *material, const mpm_block *block);
 
 /* ---- lists --------------------------------------------------------------------------------- */
@@ -619,7 +619,7 @@ typedef struct mpm_node {
 typedef struct mpm_touch {
     mpm_real gradient[3];  /* sum of m grad N (A 3.30): out of the body */
     mpm_real shift[3];     /* added to the momentum of level k, without a force on the points */
-    mpm_real inner[3];     /* internal force and dampers */
+    mpm_real inner[3];     /* internal force and dampers; after mpm_stress, with the new internal force added */
     mpm_real cut[3];       /* added to the velocity of MUSL, so that no strain goes through contact */
     mpm_real work[2];      /* for your sums over points, 0 after mpm_contact_find (mpm_bond.h: D and weights) */
     int32_t pair;          /* first pair of the node; those of one node follow each other */
@@ -778,7 +778,7 @@ MPM_API mpm_status mpm_contact_set(mpm_world *w, int32_t a, int32_t b, const mpm
 MPM_API const mpm_contact *mpm_contact_of(const mpm_world *w, int32_t a, int32_t b);
 
 /* Takes a user field of the points by name (a text that stays): its number f, for points.user[f], 0 in all
-   points. The same name gives the same number again. -1 when there is none left. Test: 26_extend. */
+   points. The same name gives the same number again. -1 when there is none left. Between steps. Test: 26_extend. */
 MPM_API int mpm_field_take(mpm_world *w, const char *name);
 
 /* Makes room after MPM_ERR_FULL in caller's memory: at least doubles nodes, runs and pairs, in the caller's block
@@ -805,7 +805,8 @@ MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt);
 /* Finds each point's base node, retires points outside the grid, restores cell order when it has
    decayed, and gives every body slots for the nodes its points touch. The step dt is kept in w->dt for all that
    follows. MPM_ERR_ARGUMENT / NAN: dt, which must be > 0; position of point fault.index. MPM_ERR_FULL in
-   caller's memory: see mpm_reserve; MPM_ERR_MEMORY. Points are unchanged. Test: 21_world. */
+   caller's memory: see mpm_reserve; MPM_ERR_MEMORY. Points beyond a closed side are put back on it, others stay.
+   Test: 21_world, 28_planes. */
 MPM_API mpm_status mpm_locate(mpm_world *w, mpm_real dt);
 
 /* Mass m_I = sum m_p N_I and momentum P_I = sum m_p v_p N_I to the nodes (A 3.23, 3.24), then essential
@@ -2451,18 +2452,22 @@ static inline int mpm__run_is_cut(const mpm_world *w, const mpm_run *r)
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     int a;
-    for (a = 0; a < w->support[0] * w->support[1] * w->support[2]; a++)
-        if (w->node[slot[a]].touch >= 0) return 1;
+    for (a = 0; a < w->support[0] * w->support[1] * w->support[2]; a++) {
+        const int32_t touch = w->node[slot[a]].touch;
+        const mpm_real *cut = touch < 0 ? NULL : w->touch[touch].cut;
+        if (cut && (cut[0] < 0 || cut[0] > 0 || cut[1] < 0 || cut[1] > 0 || cut[2] < 0 || cut[2] > 0)) return 1;
+    }
     return 0;
 }
 
 /* Stress works through the cut velocities, forces on the points through those that were mapped: what the cuts
-   kept from the stress, cut . (f_k + f_k+1) dt / 2, went to contact, holds and walls. */
+   kept from the stress, cut . (f_k + f_k+1) dt / 2, went to contact, holds and walls. A node of several pairs is booked
+   by its first. */
 static inline void mpm__account_cuts(mpm_world *w)
 {
     int32_t i;
     int d;
-    if (w->touches == 0 || (w->desc.scheme == MPM_SCHEME_THESIS && w->walls_possible == 0)) return;
+    if (w->touches == 0 || (w->desc.scheme == MPM_SCHEME_THESIS && w->walls_possible == 0)) return; /* no cuts */
     for (i = 0; i < w->runs; i++)
         if (mpm__run_is_cut(w, &w->run[i])) mpm__inner_again(w, &w->run[i]);
     for (i = 0; i < w->nodes; i++) {
@@ -3210,7 +3215,7 @@ static inline void mpm__copy_points(mpm_world *w, const mpm_world *from)
 static inline mpm_status mpm__enlarge(mpm_world *w, const mpm_world *before)
 {
     const size_t bytes = mpm__points_bytes(w);
-    void *block = bytes == (size_t)-1 ? NULL : MPM_MALLOC(bytes);
+    void *block = MPM_MALLOC(bytes);
     if (!block) {
         *w = *before;
         return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)bytes, -1);
@@ -3742,29 +3747,30 @@ static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
     return MPM_OK;
 }
 
-/* The mean mass of the points of a body, which has some. */
-static inline void mpm__mean_mass(const mpm_world *w, mpm_body *b)
+/* The mean mass of a body's points, and the mass at its damped faces. */
+static inline void mpm__masses(const mpm_world *w, mpm_body *b)
 {
+    const mpm_points *p = &w->points;
     double mass = 0;
     int32_t i;
-    for (i = b->first; i < b->first + b->count; i++) mass += (double)w->points.mass[i];
+    b->mass[0] = b->mass[1] = 0;
+    for (i = b->first; i < b->first + b->count; i++) {
+        if (p->flags[i] & MPM_FACE_BOTTOM) b->mass[0] += p->mass[i];
+        if (p->flags[i] & MPM_FACE_RIM) b->mass[1] += p->mass[i];
+        mass += (double)p->mass[i];
+    }
     if (b->count > 0) b->point_mass = (mpm_real)(mass / b->count);
 }
 
 /* Sums of the points just written, and their numbers. */
 static inline void mpm__body_sums(mpm_world *w, mpm_body *b)
 {
-    const mpm_points *p = &w->points;
     int32_t i;
     b->first = w->points.count;
     b->active = b->count;
     if (b->desc.id >= 0) w->next_id = b->desc.id;
-    for (i = b->first; i < b->first + b->count; i++) {
-        if (p->flags[i] & MPM_FACE_BOTTOM) b->mass[0] += p->mass[i];
-        if (p->flags[i] & MPM_FACE_RIM) b->mass[1] += p->mass[i];
-        p->id[i] = w->next_id++;
-    }
-    mpm__mean_mass(w, b);
+    for (i = b->first; i < b->first + b->count; i++) w->points.id[i] = w->next_id++;
+    mpm__masses(w, b);
 }
 
 /* A body added earlier may stick into the new one without the reverse. */
@@ -3996,6 +4002,7 @@ MPM_API mpm_status mpm_points_add(mpm_world *w, int32_t body, const mpm_cloud *c
     int32_t i;
     mpm_status s = mpm_want(body >= 0 && body < w->bodies, f, "body", (mpm_real)body, -1);
     if (s != MPM_OK || (s = mpm__cloud_check(w, body, &w->body[body].desc, c, f)) != MPM_OK ||
+        (s = mpm_want(w->next_id <= 2147483647 - c->count, f, "id", (mpm_real)w->next_id, -1)) != MPM_OK ||
         (s = mpm__room(w, c->count, 0, 0, 0)) != MPM_OK)
         return s;
     mpm__grid_reset(w);
@@ -4007,7 +4014,7 @@ MPM_API mpm_status mpm_points_add(mpm_world *w, int32_t body, const mpm_cloud *c
         w->body[body].active++;
         w->points.count++;
     }
-    mpm__mean_mass(w, &w->body[body]);
+    mpm__masses(w, &w->body[body]);
     w->sorted_runs = 0;
     return MPM_OK;
 }
@@ -4020,7 +4027,7 @@ MPM_API mpm_status mpm_point_take(mpm_world *w, int32_t i)
     mpm__grid_reset(w);
     while (i >= w->body[b].first + w->body[b].count) b++;
     mpm__close_place(w, b, i);
-    mpm__mean_mass(w, &w->body[b]);
+    mpm__masses(w, &w->body[b]);
     return MPM_OK;
 }
 

@@ -2,6 +2,7 @@
    double, published numbers and exact limits. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "strength_reference.h"
+#include "stiffened.h"
 #include "check.h"
 
 #include <float.h>
@@ -365,19 +366,6 @@ static void test_waves(void)
     shear = 8930 * (double)vs * (double)vs;
     CHECK_RELATIVE("computed moduli give back rho c0^2", bulk, 8930 * 3940.0 * 3940.0, 64 * (double)MPM_EPSILON);
     CHECK_RELATIVE("... and G0", shear, 47.7e9, 64 * (double)MPM_EPSILON);
-}
-
-/* A stiffened gas, p = (g - 1) rho e + g P (rho/rho0 - 1), as the header prints it. */
-typedef struct stiffened { mpm_real g, P; } stiffened;
-
-static mpm_pressure stiffened_gas(const void *context, const mpm_material *m, mpm_real density, mpm_real energy)
-{
-    const stiffened *c = (const stiffened *)context;
-    mpm_pressure p;
-    p.energy_slope = (c->g - 1) * density;
-    p.pressure = p.energy_slope * energy + c->g * c->P * (density / m->density - 1);
-    p.sound_speed = mpm_sqrt(c->g * (p.pressure + c->P) / density);
-    return p;
 }
 
 /* The shock of a stiffened gas in closed form: c0^2 = g P/rho0, Us^2 - (g + 1)/2 up Us = c0^2, p = rho0 Us up. */

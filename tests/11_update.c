@@ -2,6 +2,7 @@
 #define MPM_IMPLEMENTATION
 #include "mpm_ptw.h"
 #include "check.h"
+#include "stiffened.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -843,19 +844,6 @@ static void test_user_strength(void)
 }
 
 /* ---- an equation of state of one's own -------------------------------------------------------- */
-
-/* A stiffened gas, p = (g - 1) rho e + g P (rho/rho0 - 1), as the header prints it. */
-typedef struct stiffened { mpm_real g, P; } stiffened;
-
-static mpm_pressure stiffened_gas(const void *context, const mpm_material *m, mpm_real density, mpm_real energy)
-{
-    const stiffened *c = (const stiffened *)context;
-    mpm_pressure p;
-    p.energy_slope = (c->g - 1) * density;
-    p.pressure = p.energy_slope * energy + c->g * c->P * (density / m->density - 1);
-    p.sound_speed = mpm_sqrt(c->g * (p.pressure + c->P) / density);
-    return p;
-}
 
 /* Murnaghan's: p = K/n ((rho/rho0)^n - 1), whatever the energy. */
 static mpm_pressure murnaghan(const void *context, const mpm_material *m, mpm_real density, mpm_real energy)

@@ -114,37 +114,45 @@ extern "C" {
 
 #define MPM_SPRAY_PLANES 8 /* most planes of one spray */
 
-/* The gas. JET is B 26, 27 with y replaced by the distance r from the axis, as the paper does;
-   AXISYMMETRIC has the same axial velocity and the radial velocity that continuity then asks for. */
-typedef enum mpm_spray_gas {
-    MPM_SPRAY_GAS_JET,
-    MPM_SPRAY_GAS_AXISYMMETRIC,
-    MPM_SPRAY_GAS_UNIFORM, /* gas_speed along x everywhere */
-    MPM_SPRAY_GAS_STILL,
-    MPM_SPRAY_GAS_USER     /* gas_fn */
-} mpm_spray_gas;
+/* Each choice once, as X(constant, "word", "meaning"), as in mpm.h. */
+#define MPM_SPRAY_GAS_LIST(X)                                                                                    \
+    X(MPM_SPRAY_GAS_JET, "jet", "B 26, 27 with y replaced by the distance r from the axis, as the paper does")   \
+    X(MPM_SPRAY_GAS_AXISYMMETRIC, "jet-axisymmetric", "the same axial velocity, radial as continuity then asks") \
+    X(MPM_SPRAY_GAS_UNIFORM, "uniform", "gas_speed along x everywhere")                                          \
+    X(MPM_SPRAY_GAS_STILL, "still", "no flow")                                                                   \
+    X(MPM_SPRAY_GAS_USER, "user", "gas_fn")
 
-/* How contacts are found: along the path (no particle passes through anything at any speed), or by
-   overlap at the ends of steps (the paper's 4.4; fast particles are missed - for comparison). */
-typedef enum mpm_spray_contact { MPM_SPRAY_SWEPT, MPM_SPRAY_OVERLAP } mpm_spray_contact;
+/* How contacts are found. */
+#define MPM_SPRAY_CONTACT_LIST(X)                                                                                \
+    X(MPM_SPRAY_SWEPT, "swept", "along the path: no particle passes through anything at any speed")              \
+    X(MPM_SPRAY_OVERLAP, "overlap", "at the ends of steps (the paper's 4.4): fast ones are missed, to compare")
 
-/* What a particle that hits a deposited one does: as at the target, always sticks, never sticks,
-   or passes through as if nothing were there. */
-typedef enum mpm_spray_deposit {
-    MPM_SPRAY_DEPOSIT_STICK,
-    MPM_SPRAY_DEPOSIT_ALWAYS,
-    MPM_SPRAY_DEPOSIT_BOUNCE,
-    MPM_SPRAY_DEPOSIT_IGNORE
-} mpm_spray_deposit;
+/* What a particle that hits a deposited one does. */
+#define MPM_SPRAY_DEPOSIT_LIST(X)                                                                                \
+    X(MPM_SPRAY_DEPOSIT_STICK, "stick", "as at the target")                                                      \
+    X(MPM_SPRAY_DEPOSIT_ALWAYS, "always", "always sticks")                                                       \
+    X(MPM_SPRAY_DEPOSIT_BOUNCE, "bounce", "never sticks")                                                        \
+    X(MPM_SPRAY_DEPOSIT_IGNORE, "ignore", "passes through as if nothing were there")
 
-/* Restitution by B 18 from the impact speed, or one constant for all contacts. */
-typedef enum mpm_spray_rebound { MPM_SPRAY_REBOUND_JOHNSON, MPM_SPRAY_REBOUND_CONSTANT } mpm_spray_rebound;
+#define MPM_SPRAY_REBOUND_LIST(X)                                                                                \
+    X(MPM_SPRAY_REBOUND_JOHNSON, "johnson", "restitution from the impact speed (B 18)")                          \
+    X(MPM_SPRAY_REBOUND_CONSTANT, "constant", "one restitution for all contacts")
 
-/* Interface energy: 2 sqrt(g1 g2) (the text below B 32), or (sqrt g1 - sqrt g2)^2 (B 31). */
-typedef enum mpm_spray_mixing { MPM_SPRAY_MIXING_DISPERSION, MPM_SPRAY_MIXING_DIFFERENCE } mpm_spray_mixing;
+/* Interface energy of two surface energies g1, g2. */
+#define MPM_SPRAY_MIXING_LIST(X)                                                                                 \
+    X(MPM_SPRAY_MIXING_DISPERSION, "dispersion", "2 sqrt(g1 g2) (the text below B 32)")                          \
+    X(MPM_SPRAY_MIXING_DIFFERENCE, "difference", "(sqrt g1 - sqrt g2)^2 (B 31)")
 
-/* Neighbours from bins, or every pair (the reference the bins are tested against). */
-typedef enum mpm_spray_search { MPM_SPRAY_BINS, MPM_SPRAY_ALL_PAIRS } mpm_spray_search;
+#define MPM_SPRAY_SEARCH_LIST(X)                                                                                 \
+    X(MPM_SPRAY_BINS, "bins", "neighbours from bins")                                                            \
+    X(MPM_SPRAY_ALL_PAIRS, "all", "every pair: the reference the bins are tested against")
+
+typedef enum mpm_spray_gas { MPM_SPRAY_GAS_LIST(MPM_LIST_ENUM) MPM_SPRAY_GASES } mpm_spray_gas;
+typedef enum mpm_spray_contact { MPM_SPRAY_CONTACT_LIST(MPM_LIST_ENUM) MPM_SPRAY_CONTACTS } mpm_spray_contact;
+typedef enum mpm_spray_deposit { MPM_SPRAY_DEPOSIT_LIST(MPM_LIST_ENUM) MPM_SPRAY_DEPOSITS } mpm_spray_deposit;
+typedef enum mpm_spray_rebound { MPM_SPRAY_REBOUND_LIST(MPM_LIST_ENUM) MPM_SPRAY_REBOUNDS } mpm_spray_rebound;
+typedef enum mpm_spray_mixing { MPM_SPRAY_MIXING_LIST(MPM_LIST_ENUM) MPM_SPRAY_MIXINGS } mpm_spray_mixing;
+typedef enum mpm_spray_search { MPM_SPRAY_SEARCH_LIST(MPM_LIST_ENUM) MPM_SPRAY_SEARCHES } mpm_spray_search;
 
 typedef struct mpm_spray_solid {
     mpm_real shear, bulk;     /* moduli [Pa], > 0 */
@@ -770,7 +778,8 @@ static inline void mpm__spray_gas_at(const mpm_spray *s, mpm_real time, const mp
     case MPM_SPRAY_GAS_JET: mpm_spray_jet_velocity(&s->jet, 0, x, u); break;
     case MPM_SPRAY_GAS_AXISYMMETRIC: mpm_spray_jet_velocity(&s->jet, 1, x, u); break;
     case MPM_SPRAY_GAS_UNIFORM: u[0] = d->gas_speed; break;
-    case MPM_SPRAY_GAS_STILL: break;
+    case MPM_SPRAY_GAS_STILL:
+    case MPM_SPRAY_GASES: break;
     case MPM_SPRAY_GAS_USER: d->gas_fn(d->gas_user, time, x, u); break;
     }
 }
@@ -928,7 +937,7 @@ static inline mpm_status mpm__spray_check_gas(const mpm_spray_desc *d, mpm_fault
 {
     mpm__spray_rule r[9];
     int n = 0, jet = d->gas == MPM_SPRAY_GAS_JET || d->gas == MPM_SPRAY_GAS_AXISYMMETRIC;
-    r[n++] = mpm__spray_rule_of("gas", (mpm_real)d->gas, d->gas >= 0 && d->gas <= MPM_SPRAY_GAS_USER &&
+    r[n++] = mpm__spray_rule_of("gas", (mpm_real)d->gas, d->gas >= 0 && d->gas < MPM_SPRAY_GASES &&
                                                              (d->gas != MPM_SPRAY_GAS_USER || d->gas_fn));
     r[n++] = mpm__spray_rule_of("gas_speed", d->gas_speed, !jet || d->gas_speed > 0);
     r[n++] = mpm__spray_rule_of("gas_density", d->gas_density, d->gas_density >= 0);
@@ -952,12 +961,12 @@ static inline mpm_status mpm__spray_check_contact(const mpm_spray_desc *d, mpm_f
     r[n++] = mpm__spray_rule_of("friction_speed", d->friction_speed, d->friction_speed > 0);
     r[n++] = mpm__spray_rule_of("restitution", d->restitution, d->restitution >= 0 && d->restitution <= 1);
     r[n++] = mpm__spray_rule_of("rebound", (mpm_real)d->rebound,
-                                d->rebound >= 0 && d->rebound <= MPM_SPRAY_REBOUND_CONSTANT);
-    r[n++] = mpm__spray_rule_of("contact", (mpm_real)d->contact, d->contact >= 0 && d->contact <= MPM_SPRAY_OVERLAP);
+                                d->rebound >= 0 && d->rebound < MPM_SPRAY_REBOUNDS);
+    r[n++] = mpm__spray_rule_of("contact", (mpm_real)d->contact, d->contact >= 0 && d->contact < MPM_SPRAY_CONTACTS);
     r[n++] = mpm__spray_rule_of("mixing", (mpm_real)d->mixing,
-                                d->mixing >= 0 && d->mixing <= MPM_SPRAY_MIXING_DIFFERENCE);
+                                d->mixing >= 0 && d->mixing < MPM_SPRAY_MIXINGS);
     r[n++] = mpm__spray_rule_of("deposit", (mpm_real)d->deposit,
-                                d->deposit >= 0 && d->deposit <= MPM_SPRAY_DEPOSIT_IGNORE);
+                                d->deposit >= 0 && d->deposit < MPM_SPRAY_DEPOSITS);
     r[n++] = mpm__spray_rule_of("gamma_target", d->gamma_target, d->gamma_target >= 0);
     r[n++] = mpm__spray_rule_of("gamma_deposit", d->gamma_deposit, d->gamma_deposit >= 0);
     return mpm__spray_judge(r, n, f);
@@ -1010,7 +1019,7 @@ static inline mpm_status mpm__spray_check_numbers(const mpm_spray_desc *d, mpm_f
     r[n++] = mpm__spray_rule_of("tolerance", d->tolerance, d->tolerance > 0);
     r[n++] = mpm__spray_rule_of("iterations", (mpm_real)d->iterations, d->iterations > 0);
     r[n++] = mpm__spray_rule_of("contacts_max", (mpm_real)d->contacts_max, d->contacts_max > 0);
-    r[n++] = mpm__spray_rule_of("search", (mpm_real)d->search, d->search >= 0 && d->search <= MPM_SPRAY_ALL_PAIRS);
+    r[n++] = mpm__spray_rule_of("search", (mpm_real)d->search, d->search >= 0 && d->search < MPM_SPRAY_SEARCHES);
     r[n++] = mpm__spray_rule_of("capacity", (mpm_real)d->capacity, d->capacity > 0 && d->capacity < (1 << 30));
     r[n++] = mpm__spray_rule_of("total", (mpm_real)d->total, d->total >= 0);
     r[n++] = mpm__spray_rule_of("target_radius", d->target_radius, d->target_radius > 0);

@@ -151,8 +151,7 @@ static inline int options_parse(int argc, char **argv, const char *about, const 
             options_help(argv[0], about, o, n);
             return 1;
         }
-        for (i = 0; i < n; i++)
-            if (!strncmp(name, "--", 2) && !strcmp(name + 2, o[i].name)) break;
+        i = strncmp(name, "--", 2) ? n : option_find(o, n, name + 2);
         if (i == n) {
             fprintf(stderr, "error: unknown option '%s' (see --help)\n", name);
             return -1;

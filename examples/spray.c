@@ -58,65 +58,42 @@ static settings settings_default(void)
 }
 
 #define OPTION_COUNT 31
+#define CRITERIA "adhesion|window"
 
-static void option_row(option *o, int *n, const char *name, option_type type, void *value, const char *help)
-{
-    o[*n].name = name;
-    o[*n].type = type;
-    o[*n].value = value;
-    o[(*n)++].help = help;
-}
-
-static int option_rows(option *o, settings *s)
+static int options_of(option *o, settings *s)
 {
     int n = 0;
-    option_row(o, &n, "gas", OPTION_TEXT, &s->gas, "jet | jet-axisymmetric | uniform | still");
-    option_row(o, &n, "speed", OPTION_REAL, &s->speed, "of the gas at the nozzle, m/s");
-    option_row(o, &n, "release", OPTION_TEXT, &s->release, "LOW:HIGH release velocity, uniform between, m/s");
-    option_row(o, &n, "alpha", OPTION_REAL, &s->alpha, "adhesion factor alpha_ADH; inf: all stick");
-    option_row(o, &n, "gamma12", OPTION_TEXT, &s->gamma12, "interface energy, J/m^2 | dispersion | difference");
-    option_row(o, &n, "restitution", OPTION_TEXT, &s->restitution, "johnson | CONSTANT");
-    option_row(o, &n, "friction", OPTION_REAL, &s->friction, "Coulomb coefficient");
-    option_row(o, &n, "median-radius", OPTION_REAL, &s->median_radius, "um");
-    option_row(o, &n, "shape", OPTION_REAL, &s->shape, "n of the size distribution");
-    option_row(o, &n, "size-min", OPTION_REAL, &s->size_min, "smallest diameter, um");
-    option_row(o, &n, "size-max", OPTION_REAL, &s->size_max, "largest diameter, um; 0: the nozzle radius");
-    option_row(o, &n, "feed", OPTION_REAL, &s->feed, "particles/s");
-    option_row(o, &n, "batch", OPTION_LONG, &s->batch, "particles injected together");
-    option_row(o, &n, "particles", OPTION_LONG, &s->particles, "stop the feed after so many; 0: never");
-    option_row(o, &n, "dt", OPTION_REAL, &s->dt, "time step, s");
-    option_row(o, &n, "steps", OPTION_LONG, &s->steps, "how many; 0: as --time says");
-    option_row(o, &n, "time", OPTION_REAL, &s->time, "end time, s");
-    option_row(o, &n, "theta", OPTION_REAL, &s->theta, "0 explicit, 0.5 trapezoidal, 1 implicit");
-    option_row(o, &n, "contact", OPTION_TEXT, &s->contact, "swept | overlap");
-    option_row(o, &n, "deposit", OPTION_TEXT, &s->deposit, "stick | always | bounce | ignore");
-    option_row(o, &n, "criterion", OPTION_TEXT, &s->criterion, "adhesion | window (cold spray, aluminium)");
-    option_row(o, &n, "critical", OPTION_REAL, &s->critical, "window: critical velocity, m/s; 0: by size");
-    option_row(o, &n, "erosion", OPTION_REAL, &s->erosion, "window: no bond above, m/s");
-    option_row(o, &n, "stand-off", OPTION_REAL, &s->stand_off, "nozzle to target, m");
-    option_row(o, &n, "box", OPTION_REAL, &s->box, "half width of the domain, m");
-    option_row(o, &n, "seed", OPTION_LONG, &s->seed, "of the random numbers");
-    option_row(o, &n, "out", OPTION_TEXT, &s->out, "folder for the results");
-    option_row(o, &n, "frames", OPTION_LONG, &s->frames, "VTK files over the run; 0: none");
-    option_row(o, &n, "restart", OPTION_TEXT, &s->restart, "go on from this checkpoint.bin to --steps or --time");
-    option_row(o, &n, "quiet", OPTION_FLAG, &s->quiet, "no progress, no table");
+    option_add_word(o, &n, "gas", &s->gas, MPM_NAMES(MPM_SPRAY_GAS_LIST), "the flow");
+    option_add(o, &n, "speed", OPTION_REAL, &s->speed, "of the gas at the nozzle, m/s");
+    option_add(o, &n, "release", OPTION_TEXT, &s->release, "LOW:HIGH release velocity, uniform between, m/s");
+    option_add(o, &n, "alpha", OPTION_REAL, &s->alpha, "adhesion factor alpha_ADH; inf: all stick");
+    option_add(o, &n, "gamma12", OPTION_TEXT, &s->gamma12, "interface energy, J/m^2 | dispersion | difference");
+    option_add(o, &n, "restitution", OPTION_TEXT, &s->restitution, "johnson | CONSTANT");
+    option_add(o, &n, "friction", OPTION_REAL, &s->friction, "Coulomb coefficient");
+    option_add(o, &n, "median-radius", OPTION_REAL, &s->median_radius, "um");
+    option_add(o, &n, "shape", OPTION_REAL, &s->shape, "n of the size distribution");
+    option_add(o, &n, "size-min", OPTION_REAL, &s->size_min, "smallest diameter, um");
+    option_add(o, &n, "size-max", OPTION_REAL, &s->size_max, "largest diameter, um; 0: the nozzle radius");
+    option_add(o, &n, "feed", OPTION_REAL, &s->feed, "particles/s");
+    option_add(o, &n, "batch", OPTION_LONG, &s->batch, "particles injected together");
+    option_add(o, &n, "particles", OPTION_LONG, &s->particles, "stop the feed after so many; 0: never");
+    option_add(o, &n, "dt", OPTION_REAL, &s->dt, "time step, s");
+    option_add(o, &n, "steps", OPTION_LONG, &s->steps, "how many; 0: as --time says");
+    option_add(o, &n, "time", OPTION_REAL, &s->time, "end time, s");
+    option_add(o, &n, "theta", OPTION_REAL, &s->theta, "0 explicit, 0.5 trapezoidal, 1 implicit");
+    option_add_word(o, &n, "contact", &s->contact, MPM_NAMES(MPM_SPRAY_CONTACT_LIST), "along paths or at their end");
+    option_add_word(o, &n, "deposit", &s->deposit, MPM_NAMES(MPM_SPRAY_DEPOSIT_LIST), "of one that hits the deposit");
+    option_add_word(o, &n, "criterion", &s->criterion, CRITERIA, "window: of cold spray, aluminium");
+    option_add(o, &n, "critical", OPTION_REAL, &s->critical, "window: critical velocity, m/s; 0: by size");
+    option_add(o, &n, "erosion", OPTION_REAL, &s->erosion, "window: no bond above, m/s");
+    option_add(o, &n, "stand-off", OPTION_REAL, &s->stand_off, "nozzle to target, m");
+    option_add(o, &n, "box", OPTION_REAL, &s->box, "half width of the domain, m");
+    option_add(o, &n, "seed", OPTION_LONG, &s->seed, "of the random numbers");
+    option_add(o, &n, "out", OPTION_TEXT, &s->out, "folder for the results");
+    option_add(o, &n, "frames", OPTION_LONG, &s->frames, "VTK files over the run; 0: none");
+    option_add(o, &n, "restart", OPTION_TEXT, &s->restart, "go on from this checkpoint.bin to --steps or --time");
+    option_add(o, &n, "quiet", OPTION_FLAG, &s->quiet, "no progress, no table");
     return n;
-}
-
-/* The place of text in a list of words separated by '|', or -1 after a message. */
-static int choose(const char *option_name, const char *text, const char *words)
-{
-    const char *w = words;
-    int n = 0;
-    size_t length = strlen(text);
-    while (*w) {
-        size_t end = strcspn(w, "|");
-        if (end == length && !strncmp(w, text, end)) return n;
-        w += end + (w[end] == '|');
-        n++;
-    }
-    fprintf(stderr, "error: --%s must be one of %s, not '%s'\n", option_name, words, text);
-    return -1;
 }
 
 /* A number, the whole text. Returns 0, or -1 (no message). */
@@ -167,32 +144,18 @@ static int parse_mixed(const settings *o, mpm_spray_desc *d)
     return 0;
 }
 
-static int parse_words(const settings *o, mpm_spray_desc *d)
+static void choose_criterion(const settings *o, mpm_spray_desc *d, mpm_spray_window *w)
 {
-    int gas = choose("gas", o->gas, "jet|jet-axisymmetric|uniform|still");
-    int contact = choose("contact", o->contact, "swept|overlap");
-    int deposit = choose("deposit", o->deposit, "stick|always|bounce|ignore");
-    if (gas < 0 || contact < 0 || deposit < 0) return -1;
-    d->gas = (mpm_spray_gas)gas;
-    d->contact = (mpm_spray_contact)contact;
-    d->deposit = (mpm_spray_deposit)deposit;
-    return 0;
-}
-
-static int parse_criterion(const settings *o, mpm_spray_desc *d, mpm_spray_window *w)
-{
-    int which = choose("criterion", o->criterion, "adhesion|window");
     *w = mpm_spray_window_aluminium();
     w->erosion = (mpm_real)o->erosion;
     if (o->critical > 0) {
         w->critical = (mpm_real)o->critical;
         w->slope = 0;
     }
-    if (which == 1) {
+    if (word_place(CRITERIA, o->criterion) == 1) {
         d->stick = mpm_spray_stick_window;
         d->stick_user = w;
     }
-    return which < 0 ? -1 : 0;
 }
 
 static int bad_number(const char *name, double value, const char *want)
@@ -247,7 +210,11 @@ static int describe(const settings *o, mpm_spray_desc *d, mpm_spray_window *w, i
     d->high[1] = d->high[2] = (mpm_real)o->box;
     d->high[0] = d->stand_off + MPM_R(0.02);
     d->seed = (uint64_t)o->seed;
-    if (parse_words(o, d) || parse_release(o, d->release) || parse_mixed(o, d) || parse_criterion(o, d, w)) return -1;
+    d->gas = (mpm_spray_gas)word_place(MPM_NAMES(MPM_SPRAY_GAS_LIST), o->gas);
+    d->contact = (mpm_spray_contact)word_place(MPM_NAMES(MPM_SPRAY_CONTACT_LIST), o->contact);
+    d->deposit = (mpm_spray_deposit)word_place(MPM_NAMES(MPM_SPRAY_DEPOSIT_LIST), o->deposit);
+    choose_criterion(o, d, w);
+    if (parse_release(o, d->release) || parse_mixed(o, d)) return -1;
     return parse_length(o, d, steps);
 }
 
@@ -617,7 +584,7 @@ static int carry_out(int argc, char **argv)
     static char note[TEXT_ROOM];
     settings o = settings_default();
     option row[OPTION_COUNT];
-    int rows = option_rows(row, &o), parsed = options_parse(argc, argv, about, row, rows);
+    int rows = options_of(row, &o), parsed = options_parse(argc, argv, about, row, rows);
     mpm_spray s;
     mpm_spray_desc d;
     mpm_spray_window window;

@@ -119,14 +119,12 @@ extern "C" {
     X(MPM_ROTATION_PROPER, "proper", "Hughes-Winget: an exact rotation, invariants kept to rounding") \
     X(MPM_ROTATION_JAUMANN, "jaumann", "A2: first order, stretches the deviator at large rotations")
 
-#define MPM__PTW_ENUM(name, word, text) name,
-typedef enum mpm_strength { MPM_STRENGTH_LIST(MPM__PTW_ENUM) } mpm_strength;
-typedef enum mpm_shear { MPM_SHEAR_LIST(MPM__PTW_ENUM) } mpm_shear;
-typedef enum mpm_melt { MPM_MELT_LIST(MPM__PTW_ENUM) } mpm_melt;
-typedef enum mpm_eos { MPM_EOS_LIST(MPM__PTW_ENUM) } mpm_eos;
-typedef enum mpm_return_mapping { MPM_RETURN_LIST(MPM__PTW_ENUM) } mpm_return_mapping;
-typedef enum mpm_rotation { MPM_ROTATION_LIST(MPM__PTW_ENUM) } mpm_rotation;
-#undef MPM__PTW_ENUM
+typedef enum mpm_strength { MPM_STRENGTH_LIST(MPM_LIST_ENUM) MPM_STRENGTHS } mpm_strength;
+typedef enum mpm_shear { MPM_SHEAR_LIST(MPM_LIST_ENUM) MPM_SHEARS } mpm_shear;
+typedef enum mpm_melt { MPM_MELT_LIST(MPM_LIST_ENUM) MPM_MELTS } mpm_melt;
+typedef enum mpm_eos { MPM_EOS_LIST(MPM_LIST_ENUM) MPM_EOSES } mpm_eos;
+typedef enum mpm_return_mapping { MPM_RETURN_LIST(MPM_LIST_ENUM) MPM_RETURNS } mpm_return_mapping;
+typedef enum mpm_rotation { MPM_ROTATION_LIST(MPM_LIST_ENUM) MPM_ROTATIONS } mpm_rotation;
 
 /* ---- parameters ---------------------------------------------------------------------------- */
 
@@ -239,6 +237,8 @@ typedef struct mpm_material {
     mpm_eos eos;
     mpm_return_mapping mapping;
     mpm_rotation rotation;
+    int flow_field;   /* of a staged return: the points' user field that keeps their flow stress (mpm_field_take);
+                         -1 (default): none */
     int erf_literal;  /* 0: the argument of erf in A 2.7 is at least 0 (default); 1: as printed */
 
     mpm_real density;        /* rho0 [mass/length^3], > 0 */
@@ -371,7 +371,7 @@ MPM_API void mpm_material_wave_speeds(const mpm_material *m, mpm_real density, m
    material  a const mpm_material *, valid under mpm_material_check; only read, so that bodies, worlds
              and threads may share one
    The block's tally, unless it is NULL, counts under MPM_TALLY_*.
-   A staged return keeps each point's flow stress in its first user field: desc.user_fields must be 1 or more.
+   A staged return keeps each point's flow stress in a user field of the points: material.flow_field.
    Returns MPM_OK; MPM_CLAMPED if a shear modulus was bounded; MPM_NOT_CONVERGED if a return ended
    at its iteration cap (bracketed: the value is usable), or a caller's equation of
    state did; MPM_ERR_ARGUMENT (count < 0, dt <= 0, a material that mpm_material_default never filled, a
@@ -1337,9 +1337,8 @@ MPM_API mpm_status mpm_material_hugoniot_pressure(const mpm_material *m, mpm_rea
 MPM_API void mpm_material_wave_speeds(const mpm_material *m, mpm_real density, mpm_real *longitudinal,
                                       mpm_real *shear)
 {
-    mpm_real nu = m->poisson, modulus = m->young / ((1 + nu) * density);
-    if (longitudinal) *longitudinal = mpm_sqrt(modulus * (1 - nu) / (1 - 2 * nu));
-    if (shear) *shear = mpm_sqrt(modulus / 2);
+    if (longitudinal) *longitudinal = mpm_wave_speed_p(m->young, m->poisson, density);
+    if (shear) *shear = mpm_wave_speed_s(m->young, m->poisson, density);
 }
 
 /* ---- the update ---------------------------------------------------------------------------- */
@@ -1756,7 +1755,7 @@ static inline mpm_real mpm__ptw_effective(const mpm__ptw_lanes *a, int i)
 static inline mpm_real mpm__ptw_stage(const mpm_material *m, const mpm__ptw_shared *h, const mpm_block *b,
                                       mpm__ptw_lanes *a, mpm__ptw_search *q)
 {
-    mpm_real per_step = 1 / b->dt, left = b->user[0][a->first + q->lane];
+    mpm_real per_step = 1 / b->dt, left = b->user[m->flow_field][a->first + q->lane];
     mpm_flow f;
     if (!(q->point.state.plastic_rate > 0))
         q->point.state.plastic_rate = mpm__ptw_effective(a, q->lane) * per_step;
@@ -1896,7 +1895,7 @@ static inline void mpm__ptw_commit(const mpm_material *m, const mpm_block *b, co
         b->plastic_rate[k] = a->increment[lane] * per_step;
         b->plastic_strain[k] += a->increment[lane];
         b->plastic_work[k] += a->dissipated[lane];
-        if (m->mapping == MPM_RETURN_STAGED) b->user[0][k] = a->staged[lane];
+        if (m->mapping == MPM_RETURN_STAGED) b->user[m->flow_field][k] = a->staged[lane];
     }
 }
 
@@ -2083,6 +2082,12 @@ static inline mpm_status mpm__ptw_update(const mpm_material *m, const mpm__ptw_s
     return bounded ? MPM_CLAMPED : MPM_OK;
 }
 
+/* Whether the points have the field that a staged return keeps their flow stress in. */
+static inline int mpm__ptw_has_field(const mpm_material *m, const mpm_block *b)
+{
+    return m->flow_field >= 0 && m->flow_field < MPM_USER_FIELDS && b->user[m->flow_field];
+}
+
 MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *block)
 {
     const mpm_material *m = (const mpm_material *)material;
@@ -2093,8 +2098,9 @@ MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *bl
     if (block->count < 0) return mpm_fail(block->fault, MPM_ERR_ARGUMENT, "count", (mpm_real)block->count, -1);
     if (!(block->dt > 0)) return mpm_fail(block->fault, MPM_ERR_ARGUMENT, "dt", block->dt, -1);
     MPM__PTW_REQUIRE(mpm__ptw_marked(m, block->fault));
-    if (m->mapping == MPM_RETURN_STAGED && !block->user[0])
-        return mpm_fail(block->fault, MPM_ERR_ARGUMENT, "user_fields (a staged return needs one)", 0, -1);
+    if (m->mapping == MPM_RETURN_STAGED && !mpm__ptw_has_field(m, block))
+        return mpm_fail(block->fault, MPM_ERR_ARGUMENT, "user_fields (a staged return needs its flow_field)",
+                        (mpm_real)m->flow_field, -1);
     h = mpm__ptw_share(m);
     bounds = mpm__ptw_bound(m, &h);
     for (a.first = 0; a.first < block->count; a.first += MPM__PTW_LANES) {
@@ -2144,6 +2150,7 @@ MPM_API mpm_material mpm_material_default(void)
     m.mark = MPM_MARK;
     m.name = "";
     m.units = mpm_units_si();
+    m.flow_field = -1;
     m.temperature = 298;
     m.heat_fraction = MPM_R(0.9);
     m.shear_floor = MPM_R(1e-3);
@@ -2197,8 +2204,7 @@ static inline mpm_status mpm__ptw_check_shear(const mpm_material *m, mpm_fault *
 {
     const mpm_real big = mpm__ptw_infinity();
     MPM__PTW_REQUIRE(mpm__ptw_positive("shear_modulus", m->shear_modulus, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_positive("shear_floor", m->shear_floor, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_within("shear_floor", m->shear_floor, 0, 1, fault));
+    MPM__PTW_REQUIRE(mpm_want(m->shear_floor > 0 && m->shear_floor <= 1, fault, "shear_floor", m->shear_floor, -1));
     if (m->shear == MPM_SHEAR_MTS) {
         MPM__PTW_REQUIRE(mpm__ptw_within("shear_d", m->shear_d, 0, big, fault));
         MPM__PTW_REQUIRE(mpm__ptw_positive("shear_t", m->shear_t, fault));
@@ -2228,9 +2234,6 @@ static inline mpm_status mpm__ptw_check_melt_and_eos(const mpm_material *m, mpm_
     return MPM_OK;
 }
 
-/* One more for each entry: adds up to the length of a list. */
-#define MPM__PTW_ONE(name, word, text) +1
-
 static inline mpm_status mpm__ptw_choice(const char *field, int choice, int count, mpm_fault *fault)
 {
     return mpm_want(choice >= 0 && choice < count, fault, field, (mpm_real)choice, -1);
@@ -2238,12 +2241,12 @@ static inline mpm_status mpm__ptw_choice(const char *field, int choice, int coun
 
 static inline mpm_status mpm__ptw_check_choices(const mpm_material *m, mpm_fault *fault)
 {
-    MPM__PTW_REQUIRE(mpm__ptw_choice("strength", (int)m->strength, MPM_STRENGTH_LIST(MPM__PTW_ONE), fault));
-    MPM__PTW_REQUIRE(mpm__ptw_choice("shear", (int)m->shear, MPM_SHEAR_LIST(MPM__PTW_ONE), fault));
-    MPM__PTW_REQUIRE(mpm__ptw_choice("melt", (int)m->melt, MPM_MELT_LIST(MPM__PTW_ONE), fault));
-    MPM__PTW_REQUIRE(mpm__ptw_choice("eos", (int)m->eos, MPM_EOS_LIST(MPM__PTW_ONE), fault));
-    MPM__PTW_REQUIRE(mpm__ptw_choice("mapping", (int)m->mapping, MPM_RETURN_LIST(MPM__PTW_ONE), fault));
-    return mpm__ptw_choice("rotation", (int)m->rotation, MPM_ROTATION_LIST(MPM__PTW_ONE), fault);
+    MPM__PTW_REQUIRE(mpm__ptw_choice("strength", (int)m->strength, MPM_STRENGTHS, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_choice("shear", (int)m->shear, MPM_SHEARS, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_choice("melt", (int)m->melt, MPM_MELTS, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_choice("eos", (int)m->eos, MPM_EOSES, fault));
+    MPM__PTW_REQUIRE(mpm__ptw_choice("mapping", (int)m->mapping, MPM_RETURNS, fault));
+    return mpm__ptw_choice("rotation", (int)m->rotation, MPM_ROTATIONS, fault);
 }
 
 MPM_API mpm_status mpm_material_check(const mpm_material *m, mpm_fault *fault)
@@ -2257,9 +2260,7 @@ MPM_API mpm_status mpm_material_check(const mpm_material *m, mpm_fault *fault)
     if ((m->strength != MPM_STRENGTH_ELASTIC && m->heat_fraction > 0) || m->compression_heating)
         MPM__PTW_REQUIRE(mpm__ptw_positive("specific_heat", m->specific_heat, fault));
     MPM__PTW_REQUIRE(mpm__ptw_positive("young", m->young, fault));
-    MPM__PTW_REQUIRE(mpm__ptw_within("poisson", m->poisson, -1, MPM_R(0.5), fault));
-    if (!(m->poisson > -1 && m->poisson < MPM_R(0.5)))
-        return mpm_fail(fault, MPM_ERR_ARGUMENT, "poisson", m->poisson, -1);
+    MPM__PTW_REQUIRE(mpm_want(m->poisson > -1 && m->poisson < MPM_R(0.5), fault, "poisson", m->poisson, -1));
     MPM__PTW_REQUIRE(mpm__ptw_within("viscosity_linear", m->viscosity_linear, 0, big, fault));
     MPM__PTW_REQUIRE(mpm__ptw_within("viscosity_quadratic", m->viscosity_quadratic, 0, big, fault));
     MPM__PTW_REQUIRE(mpm__ptw_check_shear(m, fault));

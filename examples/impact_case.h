@@ -192,7 +192,6 @@ static inline mpm_desc impact_grid(const impact_case *c)
     }
     d.cells[2] = above + below;
     d.origin[2] = (mpm_real)(shift - below * c->cell);
-    d.user_fields = !strcmp(c->plasticity, "staged"); /* its flow stress */
     d.contact.friction = (mpm_real)c->friction;
     d.contact.touch = c->touch;
     d.contact.normal = (mpm_normal_rule)word_place(MPM_NAMES(MPM_NORMAL_LIST), c->normal);
@@ -278,6 +277,11 @@ static inline int impact_build(impact *s, const impact_case *c, mpm_desc d, cons
     particle = impact_body(&s->material[IMPACT_PARTICLE], c, IMPACT_PARTICLE);
     substrate = impact_body(&s->material[IMPACT_SUBSTRATE], c, IMPACT_SUBSTRATE);
     status = mpm_init(&s->world, &d, NULL, 0);
+    if (status == MPM_OK && !strcmp(c->plasticity, "staged")) {
+        const int field = mpm_field_take(&s->world, "flow stress");
+        for (a = 0; a < 2; a++) s->material[a].flow_field = field;
+        if (field < 0) status = s->world.fault.status;
+    }
     for (k = 0; k < count && status == MPM_OK; k++) {
         for (a = 0; a < 3; a++) particle.shape.center[a] = (mpm_real)center[k][a];
         status = mpm_body_add(&s->world, &particle);

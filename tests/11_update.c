@@ -29,6 +29,7 @@ static mpm_material preset(const char *name, const char *model, mpm_units units)
         printf("not ok 0 - no preset %s %s\n", name, model);
         exit(1);
     }
+    m.flow_field = 0;
     return m;
 }
 
@@ -418,6 +419,9 @@ static void test_staged_field(void)
     b.fault = &fault;
     CHECK_EQUAL("staged without a user field", mpm_material_stress(&m, &b), MPM_ERR_ARGUMENT);
     CHECK_TRUE("... says so", !strncmp(fault.field, "user_fields", 11));
+    m.flow_field = mpm_material_default().flow_field;
+    CHECK_EQUAL("... with none chosen", mpm_material_stress(&m, &b), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... names the choice", fault.value < 0);
 }
 
 /* ---- energy and heat -------------------------------------------------------------------------- */

@@ -13,6 +13,7 @@ static void change_material(fuzz *f, mpm_material *m)
     FUZZ_CHOICE(f, m->melt);
     FUZZ_CHOICE(f, m->eos);
     FUZZ_CHOICE(f, m->mapping);
+    m->flow_field = fuzz_int(f, 0);
     FUZZ_CHOICE(f, m->rotation);
     FUZZ_CHOICE(f, m->compression_heating);
     fuzz_reals(f, &m->density, 4);

@@ -703,7 +703,7 @@ typedef struct mpm_world {
     mpm_node *node;          /* slots */
     int32_t nodes, node_capacity;
     mpm_touch *touch;
-    int32_t touches, touch_capacity, walls_possible;
+    int32_t touches;
     mpm_run *run;
     int32_t *slot;           /* per run: support[0]*support[1]*support[2] slots */
     int32_t runs, run_capacity, sorted_runs;
@@ -764,14 +764,14 @@ MPM_API mpm_status mpm_body_add_points(mpm_world *w, const mpm_body_desc *b, con
    Errors as mpm_body_add_points. Test: 26_extend. */
 MPM_API mpm_status mpm_points_add(mpm_world *w, int32_t body, const mpm_cloud *points);
 
-/* Takes point i (an index, not an id) out of the world, with its mass, between steps. Other points move.
-   MPM_ERR_ARGUMENT: there is none. Test: 26_extend. */
+/* Takes point i (an index, not an id) out of the world, with its mass, between steps. Other points move; the sums of
+   its body are made anew, a pass over its points. MPM_ERR_ARGUMENT: there is none. Test: 26_extend. */
 MPM_API mpm_status mpm_point_take(mpm_world *w, int32_t i);
 
 /* The rule of contact between bodies a and b, in any order, -1 for any body, between steps: of several that fit, the
    one set last; set again for the same two, it replaces theirs. Bodies need not be there yet. MPM_ERR_ARGUMENT / NAN:
-   a field of the rule; MPM_ERR_FULL: desc.rules; in caller's memory logistic normals must stand in desc.contact too,
-   for their room. Test: 26_extend. */
+   a body below -1, a field of the rule; MPM_ERR_FULL: desc.rules; in caller's memory logistic normals must stand in
+   desc.contact too, for their room. Test: 26_extend. */
 MPM_API mpm_status mpm_contact_set(mpm_world *w, int32_t a, int32_t b, const mpm_contact *rule);
 
 /* The rule that bodies a and b meet by. Test: 26_extend. */
@@ -798,8 +798,8 @@ MPM_API mpm_real mpm_time_step(const mpm_world *w, mpm_real factor);
 /* ---- the step, phase by phase -------------------------------------------------------------- */
 
 /* One step of dt [time] > 0: the phases below in their order. Write your own loop to put something
-   between them. Returns what mpm_locate or mpm_stress return: MPM_OK, MPM_RETIRED; MPM_ERR_FULL, MPM_ERR_MEMORY
-   and MPM_ERR_NAN before anything changed; MPM_ERR_STATE with the step incomplete. Test: 20_method, 71_step. */
+   between them. Returns MPM_OK, MPM_RETIRED; an error of mpm_locate (MPM_ERR_FULL, MEMORY, NAN, of a position),
+   before the step began; or an error of mpm_stress, with the step incomplete. Test: 20_method, 71_step. */
 MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt);
 
 /* Finds each point's base node, retires points outside the grid, restores cell order when it has
@@ -838,8 +838,8 @@ MPM_API void mpm_g2p(mpm_world *w);
 MPM_API void mpm_musl(mpm_world *w);
 
 /* Strain and rotation increments, d eps = dt sym grad v (A 3.35), density rho / (1 + tr d eps) (A 3.36), then the
-   bodies' constitutive update. MPM_ERR_STATE / NAN: fault names field, value and point; the step is then
-   incomplete. Test: 20_method, 71_step. */
+   bodies' constitutive update. MPM_ERR_STATE / NAN, or a law's own error: fault names field, value and point; the
+   step is then incomplete. Test: 20_method, 71_step. */
 MPM_API mpm_status mpm_stress(mpm_world *w);
 
 /* Position of the points, x_p += dt sum N_I P_I / m_I (A 3.32, second half), and time. Last, since all phases use
@@ -872,9 +872,9 @@ MPM_API void mpm_support_velocity(const mpm_world *w, const mpm_support *s, mpm_
    mpm_grid_update. Test: 26_extend. */
 MPM_API void mpm_push(mpm_world *w, const mpm_support *s, const mpm_real f[3]);
 
-/* Momentum j to a slot from outside: rigid tools, prescribed velocities. What sides forbid is taken out of j; the
-   rest is in the ledger: in `impulse`, its work in `walls` (negative: brought in). Between mpm_grid_update and
-   mpm_g2p. Test: 32_pull. */
+/* Momentum j to a slot from outside: rigid tools, prescribed velocities. What symmetry and fixed sides forbid is taken
+   out of j; a wall, which has acted by then, resists it from the next step on. The rest is in the ledger: in
+   `impulse`, its work in `walls` (negative: brought in). Between mpm_grid_update and mpm_g2p. Test: 32_pull. */
 MPM_API void mpm_node_push(mpm_world *w, int32_t slot, mpm_real j[3]);
 
 /* The slot of a body at grid node `index`, or -1. Test: 26_extend. */
@@ -1259,14 +1259,6 @@ static inline int mpm__has_walls(const mpm_desc *d)
 {
     int s, found = 0;
     for (s = 0; s < 6; s++) found |= d->side[s] == MPM_SIDE_WALL;
-    return found;
-}
-
-/* 1 if a node lies at a rigid wall. */
-static inline int mpm__at_wall(const mpm_world *w, const mpm_node *n)
-{
-    int s, found = 0;
-    for (s = 0; s < 6; s++) found |= (n->flags >> s & 1) && w->desc.side[s] == MPM_SIDE_WALL;
     return found;
 }
 
@@ -2190,7 +2182,7 @@ static inline void mpm__apply_settled(mpm_world *w)
         mpm_pair_push(w, p, j);
     }
     for (i = 0; i < w->nodes; i++)
-        if ((w->node[i].flags & MPM_NODE_CONTACT) && mpm__at_wall(w, &w->node[i])) mpm__walls(w, &w->node[i]);
+        if (w->node[i].flags & MPM_NODE_CONTACT) mpm__walls(w, &w->node[i]);
 }
 
 MPM_API void mpm_contact_apply(mpm_world *w)
@@ -2389,8 +2381,8 @@ static inline mpm_status mpm__constitute(mpm_world *w, const mpm_body *body, int
     w->fault.status = MPM_OK;
     s = body->desc.stress(body->desc.material, &b);
     if (s < 0 && w->fault.status >= 0) mpm_fail(&w->fault, s, "stress law of a body", 0, 0);
-    if (s < 0) w->fault.index += first;
-    else w->fault.status = last;
+    if (s >= 0) w->fault.status = last;
+    else if (w->fault.index >= 0) w->fault.index += first; /* of the block, so far */
     if (s > 0) w->notices++;
     return s;
 }
@@ -2467,7 +2459,7 @@ static inline void mpm__account_cuts(mpm_world *w)
 {
     int32_t i;
     int d;
-    if (w->touches == 0 || (w->desc.scheme == MPM_SCHEME_THESIS && w->walls_possible == 0)) return; /* no cuts */
+    if (w->touches == 0 || (w->desc.scheme == MPM_SCHEME_THESIS && !mpm__has_walls(&w->desc))) return; /* no cuts */
     for (i = 0; i < w->runs; i++)
         if (mpm__run_is_cut(w, &w->run[i])) mpm__inner_again(w, &w->run[i]);
     for (i = 0; i < w->nodes; i++) {
@@ -2535,7 +2527,7 @@ static inline void mpm__grid_reset(mpm_world *w)
 {
     int32_t s;
     for (s = 0; s < w->nodes; s++) w->head[w->node[s].index] = -1;
-    w->nodes = w->runs = w->pairs = w->pairs_possible = w->touches = w->walls_possible = 0;
+    w->nodes = w->runs = w->pairs = w->pairs_possible = w->touches = 0;
 }
 
 /* Puts point j's fields where point i's are, and the reverse. */
@@ -2697,7 +2689,6 @@ static inline int32_t mpm__slot(mpm_world *w, int32_t body, const int32_t *at)
     node->body = body;
     node->flags = sides;
     node->touch = -1;
-    w->walls_possible += mpm__at_wall(w, node);
     node->next = w->head[index];
     w->head[index] = s;
     return s;
@@ -2757,8 +2748,7 @@ static inline mpm_status mpm__list_runs(mpm_world *w)
             w->runs++;
         }
     }
-    if (w->pairs_possible > w->pair_capacity) return MPM_ERR_FULL;
-    return w->walls_possible + 2 * w->pairs_possible > w->touch_capacity ? MPM_ERR_FULL : MPM_OK;
+    return w->pairs_possible > w->pair_capacity ? MPM_ERR_FULL : MPM_OK;
 }
 
 /* Sorts the points again once their order has cost a quarter more runs. */
@@ -2889,7 +2879,7 @@ MPM_API int mpm_blobs(mpm_world *w, mpm_blob *blob)
     blob[n++] = mpm_blob_of("held", &w->held, sizeof w->held);
     for (b = 0; b < w->bodies; b++) { /* first, count and active stand side by side */
         blob[n++] = mpm_blob_of("points of body", &w->body[b].first, 3 * sizeof(int32_t));
-        blob[n++] = mpm_blob_of("mean mass", &w->body[b].point_mass, sizeof w->body[b].point_mass);
+        blob[n++] = mpm_blob_of("masses of body", &w->body[b].point_mass, 3 * sizeof(mpm_real)); /* mean, faces */
     }
     return n;
 }
@@ -2907,6 +2897,8 @@ static inline mpm_status mpm__restored_counts(const mpm_world *w, mpm_fault *f)
         if (s == MPM_OK)
             s = mpm_want(B->active >= 0 && B->active <= B->count, f, "active points of body", (mpm_real)B->active, b);
         if (s == MPM_OK) s = mpm_want(B->point_mass > 0, f, "mean mass of body", B->point_mass, b);
+        if (s == MPM_OK) s = mpm_want(B->mass[0] >= 0, f, "mass at the bottom of body", B->mass[0], b);
+        if (s == MPM_OK) s = mpm_want(B->mass[1] >= 0, f, "mass at the rim of body", B->mass[1], b);
         if (s == MPM_OK) next += B->count;
     }
     if (s == MPM_OK) s = mpm_want(next == p->count, f, "points of all bodies", (mpm_real)next, -1);
@@ -3056,20 +3048,20 @@ static inline size_t mpm__layout_points(mpm_world *w, char *base)
     return used;
 }
 
-/* Lays out the second block for a number of slots: there are as many runs as slots, and far fewer pairs. */
+/* Lays out the second block for a number of slots: there are as many runs as slots, and far fewer pairs. Each pair
+   touches two slots, walls any. */
 static inline size_t mpm__layout_work(mpm_world *w, char *base, int32_t nodes)
 {
     const int32_t pairs = nodes / 4 + 64;
-    size_t used = 0, n = (size_t)nodes;
+    size_t used = 0, n = (size_t)nodes, touches = 2 * (size_t)pairs + (mpm__has_walls(&w->desc) ? n : 0);
     size_t reach = (size_t)w->support[0] * (size_t)w->support[1] * (size_t)w->support[2];
     w->node_capacity = w->run_capacity = nodes;
     w->pair_capacity = pairs;
-    w->touch_capacity = 2 * pairs + (mpm__has_walls(&w->desc) ? nodes : 0);
     w->node = (mpm_node *)mpm_carve(base, &used, n, sizeof(mpm_node));
     w->run = (mpm_run *)mpm_carve(base, &used, n, sizeof(mpm_run));
     w->slot = (int32_t *)mpm_carve(base, &used, mpm_size_mul(n, reach), sizeof(int32_t));
     w->pair = (mpm_pair *)mpm_carve(base, &used, (size_t)pairs, sizeof(mpm_pair));
-    w->touch = (mpm_touch *)mpm_carve(base, &used, (size_t)w->touch_capacity, sizeof(mpm_touch));
+    w->touch = (mpm_touch *)mpm_carve(base, &used, touches, sizeof(mpm_touch));
     w->plane = (mpm_plane *)mpm_carve(base, &used, w->planes ? (size_t)pairs : 0, sizeof(mpm_plane));
     if (!w->planes) w->plane = NULL;
     return used;
@@ -3224,7 +3216,7 @@ static inline mpm_status mpm__enlarge(mpm_world *w, const mpm_world *before)
     w->memory_bytes = bytes;
     mpm__clear_points(w);
     mpm__copy_points(w, before);
-    w->nodes = w->runs = w->pairs = w->pairs_possible = w->touches = w->walls_possible = 0;
+    w->nodes = w->runs = w->pairs = w->pairs_possible = w->touches = 0;
     MPM_FREE(before->memory);
     return MPM_OK;
 }
@@ -3291,6 +3283,8 @@ MPM_API mpm_status mpm_contact_set(mpm_world *w, int32_t a, int32_t b, const mpm
 {
     const mpm_contact own = *rule; /* it may be one of the world's, which move */
     mpm_status s = mpm_contact_check(&own, &w->fault);
+    if (s == MPM_OK) s = mpm_want(a >= -1, &w->fault, "body", (mpm_real)a, -1);
+    if (s == MPM_OK) s = mpm_want(b >= -1, &w->fault, "body", (mpm_real)b, -1);
     if (s == MPM_OK && own.normal == MPM_NORMAL_LOGISTIC) s = mpm__plane_room(w);
     if (s != MPM_OK) return s;
     mpm__rule_drop(w, a, b);
@@ -3751,14 +3745,16 @@ static inline mpm_status mpm__fill(mpm_world *w, mpm_body *b, mpm_fault *f)
 static inline void mpm__masses(const mpm_world *w, mpm_body *b)
 {
     const mpm_points *p = &w->points;
-    double mass = 0;
+    double mass = 0, bottom = 0, rim = 0;
     int32_t i;
-    b->mass[0] = b->mass[1] = 0;
     for (i = b->first; i < b->first + b->count; i++) {
-        if (p->flags[i] & MPM_FACE_BOTTOM) b->mass[0] += p->mass[i];
-        if (p->flags[i] & MPM_FACE_RIM) b->mass[1] += p->mass[i];
-        mass += (double)p->mass[i];
+        const double m = (double)p->mass[i];
+        if (p->flags[i] & MPM_FACE_BOTTOM) bottom += m;
+        if (p->flags[i] & MPM_FACE_RIM) rim += m;
+        mass += m;
     }
+    b->mass[0] = (mpm_real)bottom;
+    b->mass[1] = (mpm_real)rim;
     if (b->count > 0) b->point_mass = (mpm_real)(mass / b->count);
 }
 
@@ -3792,8 +3788,9 @@ static inline int32_t mpm__point_inside(const mpm_world *w, const mpm_shape *s)
 /* Counts a written body in and makes room for its nodes, with half as much again to spare. */
 static inline mpm_status mpm__body_join(mpm_world *w, mpm_body *b)
 {
-    const int32_t next_id = w->next_id;
-    mpm_status s;
+    const int32_t next_id = w->next_id, id = b->desc.id >= 0 ? b->desc.id : next_id;
+    mpm_status s = mpm_want(id <= 2147483647 - b->count, &w->fault, "id", (mpm_real)id, -1);
+    if (s != MPM_OK) return s;
     mpm__body_sums(w, b);
     w->body[w->bodies++] = *b;
     w->points.count += b->count;
@@ -3843,7 +3840,6 @@ MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *desc)
     if ((other = mpm__point_inside(w, &own.shape)) >= 0)
         return mpm_fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
     if ((s = mpm__count_inside(&w->desc, &own, &count, f)) != MPM_OK) return s;
-    if (own.id > 2147483647 - count) return mpm_fail(f, MPM_ERR_ARGUMENT, "id", (mpm_real)own.id, -1);
     if (count == 0) return mpm_fail(f, MPM_ERR_ARGUMENT, "shape (holds no point at spacing)", own.spacing, -1);
     if ((s = mpm__room(w, count, 1, 0, 0)) != MPM_OK) return s;
     b.desc = own;

@@ -304,6 +304,7 @@ static void huge(void)
     mpm_desc d = scene_grid(1, 10, 10, 10, 0, 0, 0);
     mpm_body_desc b = mpm_body_desc_default();
     mpm_world w;
+    size_t some;
     int a;
     b.shape = mpm_shape_user(round_of_10000, NULL, low, high);
     b.spacing = MPM_R(0.5);
@@ -319,6 +320,15 @@ static void huge(void)
     asked = 0;
     CHECK_EQUAL("between mirrors: what is left", mpm_shape_count(&d, &b.shape, b.spacing), 400);
     CHECK_TRUE("... nothing else was asked for", asked < 1000);
+    d = mpm_desc_default();
+    d.cell = 1;
+    d.points = 1;
+    d.side[0] = MPM_SIDE_WALL;
+    d.nodes = 1000;
+    some = mpm_bytes(&d);
+    d.nodes = 2000000000;
+    CHECK_TRUE("two thousand million nodes at walls are counted, or refused", mpm_bytes(&d) == 0 ||
+               mpm_bytes(&d) / 1000000 > some / 1000);
 }
 
 static mpm_status silent(const void *material, const mpm_block *block)
@@ -328,10 +338,31 @@ static mpm_status silent(const void *material, const mpm_block *block)
     return MPM_ERR_STATE;
 }
 
+static mpm_status no_point(const void *material, const mpm_block *block)
+{
+    (void)material;
+    return mpm_fail(block->fault, MPM_ERR_ARGUMENT, "law", 0, -1);
+}
+
 static mpm_status two_words(const void *material, const mpm_block *block)
 {
     mpm_fail(block->fault, MPM_ERR_NAN, "two words", 7, 1);
     return silent(material, block);
+}
+
+/* What can be said without a world. */
+static void small_ones(void)
+{
+    const mpm_shape ball = mpm_ellipsoid(1, 2, 3, 2, 3, 4), post = mpm_cylinder(0, 0, 1, 2, 3);
+    CHECK_TRUE("an ellipsoid holds its centre and ends", mpm_shape_contains(&ball, 1, 2, 3) &&
+               mpm_shape_contains(&ball, MPM_R(2.99), 2, 3) && mpm_shape_contains(&ball, 1, MPM_R(-0.99), 3));
+    CHECK_TRUE("... and nothing beyond", !mpm_shape_contains(&ball, MPM_R(3.01), 2, 3) &&
+               !mpm_shape_contains(&ball, MPM_R(2.5), MPM_R(4.5), 3));
+    CHECK_TRUE("a cylinder too", mpm_shape_contains(&post, MPM_R(1.4), MPM_R(1.4), MPM_R(1.01)) &&
+               !mpm_shape_contains(&post, MPM_R(1.5), MPM_R(1.5), 2) && !mpm_shape_contains(&post, 0, 0, MPM_R(4.01)));
+    CHECK_RELATIVE("shear waves: sqrt(mu/rho)", mpm_wave_speed_s(70e9, MPM_R(0.25), 2700), sqrt(28e9 / 2700), 8 * eps);
+    CHECK_RELATIVE("longitudinal: sqrt((lambda + 2 mu)/rho)", mpm_wave_speed_p(70e9, MPM_R(0.25), 2700),
+                   sqrt(84e9 / 2700), 8 * eps);
 }
 
 /* A law that fails stops the step with its status, whether it says why or not. */
@@ -352,6 +383,15 @@ static void laws_fail(void)
     w.body[0].desc.stress = two_words;
     CHECK_EQUAL("law with two answers: its status counts", mpm_step(&w, MPM_R(0.1)), MPM_ERR_STATE);
     CHECK_EQUAL("... its fault stays", w.fault.value, 7);
+    b.shape = mpm_box(3, 3, MPM_R(4.5), 4, 4, MPM_R(5.5));
+    mpm_body_add(&w, &b);
+    w.body[0].desc.stress = NULL;
+    w.body[1].desc.stress = no_point;
+    CHECK_EQUAL("law that blames no point", mpm_step(&w, MPM_R(0.1)), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("... blames none of the world either", w.fault.index, -1);
+    w.body[1].desc.stress = two_words;
+    mpm_step(&w, MPM_R(0.1));
+    CHECK_EQUAL("law that blames its second", w.fault.index, w.body[1].first + 1);
     mpm_free(&w);
 }
 
@@ -365,6 +405,7 @@ int main(void)
     units();
     labels();
     huge();
+    small_ones();
     laws_fail();
     return check_end();
 }

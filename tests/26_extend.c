@@ -132,6 +132,30 @@ static void nodes_found(const mpm_world *w)
     CHECK_TRUE("... y is 0 in two dimensions", flat);
 }
 
+/* The furthest that the grid's velocity at a point is from 10 down, what nodes give there; those across the mirror
+   z = -1 go up, those on it rest. */
+static double slowest(const mpm_world *w)
+{
+    double worst = 0;
+    int32_t r, i;
+    int a;
+    for (r = 0; r < w->runs; r++)
+        for (i = w->run[r].first; i < w->run[r].first + w->run[r].count; i++) {
+            double N = 0;
+            mpm_support s;
+            mpm_real v[3];
+            mpm_support_of(w, &w->run[r], i, &s);
+            mpm_support_velocity(w, &s, v);
+            for (a = 0; a < s.count; a++) {
+                mpm_real at[3];
+                mpm_node_position(w, &w->node[s.slot[a]], at);
+                if (at[2] > -1 + MPM_R(0.01)) N += (s.mirror[a] & 4 ? -1 : 1) * (double)s.N[a];
+            }
+            worst = check_worst(worst, fabs((double)v[2] + 10 * N) + fabs((double)v[0]) + fabs((double)v[1]));
+        }
+    return worst;
+}
+
 /* A ball in the corner of three mirrors, where supports reach through all of them. */
 static void supports(mpm_geometry geometry, mpm_basis basis, const char *name)
 {
@@ -148,6 +172,7 @@ static void supports(mpm_geometry geometry, mpm_basis basis, const char *name)
     CHECK_EQUAL("... located", mpm_locate(&w, step), MPM_OK);
     mpm_p2g(&w);
     support_of_points(&w, &sum, &place, &slope, &mirrors);
+    CHECK_NEAR("... the grid moves as one with its points", slowest(&w), 0, 1000 * eps);
     CHECK_NEAR("... N sums to 1, gradients to 0", sum, 0, 64 * eps);
     CHECK_NEAR("... places come back, mirror images counted [um]", place, 0, basis == MPM_GIMP ? 64 * eps : 1e5 * eps);
     CHECK_NEAR("... gradients of the place are 1", slope, 0, 256 * eps);
@@ -478,6 +503,10 @@ static void wildcards(void)
     CHECK_EQUAL("a bad rule", mpm_contact_set(&w, 0, 1, &c), MPM_ERR_ARGUMENT);
     CHECK_TRUE("... is named", !strcmp(w.fault.field, "contact.friction"));
     CHECK_EQUAL("... and not kept", w.rules, 3);
+    c.friction = 0;
+    CHECK_EQUAL("a rule for no body there can be", mpm_contact_set(&w, 0, -2, &c), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... which is named", !strcmp(w.fault.field, "body") && w.fault.value < MPM_R(-1.5));
+    CHECK_EQUAL("... nor is that", w.rules, 3);
     mpm_free(&w);
 }
 
@@ -707,6 +736,10 @@ static void given(void)
     CHECK_RELATIVE("... mass: volumes times density", mpm_body_totals(&w, 1).mass, mass * 0.0027, 10 * eps);
     CHECK_NEAR("... velocity of the body", mpm_body_totals(&w, 1).momentum[2], -3 * mass * 0.0027, eps * mass);
     c = rows_of(&r, MPM_R(8.25));
+    b.id = 2147483647;
+    CHECK_EQUAL("numbers that run out", mpm_body_add_points(&w, &b, &c), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... are named", !strcmp(w.fault.field, "id") && w.bodies == 2);
+    b.id = -1;
     CHECK_EQUAL("a third of places alone", mpm_body_add_points(&w, &b, &c), MPM_OK);
     CHECK_RELATIVE("... mass: cubes of the spacing", mpm_body_totals(&w, 2).mass, MANY * 0.125 * 0.0027, 10 * eps);
     CHECK_EQUAL("a step", mpm_step(&w, step), MPM_OK);

@@ -344,6 +344,8 @@ static mpm_status make_world(mpm_world *w)
     if (status >= 0) status = mpm_body_add(w, &b);
     b.shape = mpm_box(MPM_R(0.2), MPM_R(0.2), MPM_R(0.2), MPM_R(1.0), MPM_R(1.0), MPM_R(0.6));
     b.velocity[0] = b.velocity[2] = 0;
+    b.absorb = MPM_FACE_BOTTOM;
+    b.wave_p = b.wave_s = mpm_sqrt(young);
     if (status >= 0) status = mpm_body_add(w, &b);
     return status;
 }
@@ -776,6 +778,9 @@ static void test_restart(void)
     equal("a third", make_world(&second), MPM_OK);
     equal("a point less in one", mpm_point_take(&whole, 5), MPM_OK);
     equal("... and the other", mpm_point_take(&first, 5), MPM_OK);
+    equal("a point of a damped face less in one", mpm_point_take(&whole, whole.body[1].first + 1), MPM_OK);
+    equal("... and the other", mpm_point_take(&first, first.body[1].first + 1), MPM_OK);
+    holds("... whose face is lighter", first.body[1].mass[0] < second.body[1].mass[0]);
     holds("run in one", run(&whole, 60));
     holds("run to half", run(&first, 31));
     holds("they differ", worlds_differ(&whole, &first));
@@ -784,6 +789,7 @@ static void test_restart(void)
     holds("run on", run(&second, 29));
     equal("steps", second.steps, whole.steps);
     holds("bodies have met", whole.ledger.contact > 0);
+    holds("the damper works", whole.ledger.absorbed > 0);
     holds("same bits in everything", !worlds_differ(&whole, &second));
     mpm_io_body_numbers(&whole, numbers);
     equal("number of the first point", numbers[0], 0);

@@ -77,7 +77,7 @@
      piece, lane  up to 32 points of a run, swept together; a lane is one of them.
      block        up to MPM_BLOCK points of a body handed to its material.
      mirror       a symmetry plane: nodes behind it are images of those before it.
-     ghost        with GIMP, the layer of nodes around the grid that points near its sides reach.
+     ghost        with GIMP and splines, the layer of nodes around the grid that points near its sides reach.
 
    Equation numbers "A n" are those of source A: the thesis this library reproduces (README; docs/source_a.md). */
 #ifndef MPM_H
@@ -382,7 +382,9 @@ typedef mpm_status (*mpm_stress_fn)(const void *material, const mpm_block *block
 
 #define MPM_BASIS_LIST(X)                                                        \
     X(MPM_LINEAR, "linear", "trilinear hexahedra, the thesis's (A 3.20)")        \
-    X(MPM_GIMP, "gimp", "uGIMP, Bardenhagen and Kober 2004: points are boxes of fixed size")
+    X(MPM_GIMP, "gimp", "uGIMP, Bardenhagen and Kober 2004: points are boxes of fixed size") \
+    X(MPM_QUADRATIC, "quadratic", "quadratic B-splines, Steffen, Kirby and Berzins 2008") \
+    X(MPM_CUBIC, "cubic", "cubic B-splines, the same: twice continuously differentiable")
 
 /* What happens at a side of the grid. */
 #define MPM_SIDE_LIST(X)                                                         \
@@ -631,7 +633,8 @@ typedef struct mpm_run {
     int32_t first, count;
     int32_t base[3];   /* lowest node of the support */
     int32_t body;
-    int32_t flags;     /* bit d, 3+d: first, last node in direction d is a mirror image; bit 6: contact */
+    int32_t flags;     /* bit d, 3+d: first, last node in direction d is an image of one inside; bit 6: contact;
+                          bit 7+d, 10+d: as bit d, 3+d, where the side is fixed */
 } mpm_run;
 
 /* Two bodies meeting at a node. */
@@ -848,16 +851,17 @@ MPM_API void mpm_move(mpm_world *w);
 
 /* ---- between the phases: what extensions use ------------------------------------------------ */
 
-#define MPM_SUPPORT 27 /* most nodes a point touches */
+#define MPM_SUPPORT 64 /* most nodes a point touches: cubic splines in three dimensions */
 
 /* The nodes a point touches, with the values N and the gradients G of their functions at the point. */
 typedef struct mpm_support {
     int count;
-    const int32_t *slot;            /* world.node[slot[a]], a < count */
+    int32_t slot[MPM_SUPPORT];      /* world.node[slot[a]], a < count */
     mpm_real N[MPM_SUPPORT];
     mpm_real G[3][MPM_SUPPORT];     /* [1/length] */
-    uint8_t mirror[MPM_SUPPORT];    /* bit d: the node stands for its image behind a symmetry plane, whose
-                                       component d is the negative */
+    uint8_t image[MPM_SUPPORT];     /* bit d: the node stands for its image behind a symmetry plane or a fixed side
+                                       across axis d */
+    uint8_t mirror[MPM_SUPPORT];    /* bit d: component d of that image's motion is the negative of the node's */
 } mpm_support;
 
 /* Of point i, which lies in `run` (world.run[k], whose points are first .. first + count - 1). Between mpm_locate
@@ -888,7 +892,8 @@ MPM_API void mpm_node_position(const mpm_world *w, const mpm_node *n, mpm_real x
 MPM_API mpm_real mpm_pair_stick(const mpm_world *w, const mpm_pair *p, mpm_real j[3]);
 
 /* Surface that a pair stands for [length^2; per depth in plane strain]: the smaller of the two bodies' there,
-   |sum m grad N . n| / initial density. In a quarter model it is a quarter. Test: 30_bond. */
+   |sum m grad N . n| / initial density. In a quarter model it is a quarter. Splines smear the edges of a face: of one
+   four cells wide it lacks 13 to 17 %. Test: 30_bond, 26_extend. */
 MPM_API double mpm_pair_area(const mpm_world *w, const mpm_pair *p);
 
 /* Momentum j to a and -j to b, as contact laws give it, less what sides forbid: kept in pair.impulse for the ledger.
@@ -955,7 +960,7 @@ MPM_API const char *mpm_version(void);
 #endif
 
 /* Inlining turns the support of the shape function and the geometry, passed as constants, into
-   specialised code: one source for linear and GIMP, 3D, plane strain and axisymmetry. */
+   specialised code: one source for every basis, 3D, plane strain and axisymmetry. */
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(MPM_NO_INLINE)
 #define MPM__KERNEL static inline __attribute__((always_inline))
 #else
@@ -1016,13 +1021,15 @@ static inline size_t mpm__grid_nodes(const mpm_world *w)
 /* Shape functions and derivatives, per direction, of up to MPM__LANES points of a run. */
 typedef struct mpm__weights {
     int n;
-    mpm_real N[3][3][MPM__LANES];
-    mpm_real dN[3][3][MPM__LANES];
+    mpm_real N[3][4][MPM__LANES];
+    mpm_real dN[3][4][MPM__LANES];
 } mpm__weights;
 
 /* One direction: t is the distance from the base node in cells, l the half size of a GIMP point in
    cells. k = 2: the linear hat, 1 - |e| at e cells from the node (A 3.20). k = 3: the hat averaged over the point
-   (uGIMP): 1 - (e^2 + l^2)/(2 l) for |e| < l, 1 - |e| up to 1 - l, (1 + l - |e|)^2/(4 l) up to 1 + l. */
+   (uGIMP): 1 - (e^2 + l^2)/(2 l) for |e| < l, 1 - |e| up to 1 - l, (1 + l - |e|)^2/(4 l) up to 1 + l; over a whole
+   cell, l = 1/2, it is the quadratic B-spline. k = 4: the cubic one, 2/3 - e^2 + |e|^3/2 for |e| < 1,
+   (2 - |e|)^3/6 up to 2. */
 MPM__KERNEL void mpm__weights_axis(mpm__weights *s, int axis, int k, const mpm_real *t, mpm_real l, mpm_real inv)
 {
     int p, i;
@@ -1038,6 +1045,16 @@ MPM__KERNEL void mpm__weights_axis(mpm__weights *s, int axis, int k, const mpm_r
             s->N[axis][1][p] = u;
             s->dN[axis][0][p] = -inv;
             s->dN[axis][1][p] = inv;
+        } else if (k == 4) { /* t - 1 and 2 - t are the distances from the two inner nodes */
+            const mpm_real u = t[p] - 1, v = 2 - t[p];
+            s->N[axis][0][p] = v * v * v / 6;
+            s->N[axis][1][p] = MPM_R(2.0) / 3 - u * u * (1 - u / 2);
+            s->N[axis][2][p] = MPM_R(2.0) / 3 - v * v * (1 - v / 2);
+            s->N[axis][3][p] = u * u * u / 6;
+            s->dN[axis][0][p] = -inv * v * v / 2;
+            s->dN[axis][1][p] = -inv * u * (2 - MPM_R(1.5) * u);
+            s->dN[axis][2][p] = inv * v * (2 - MPM_R(1.5) * v);
+            s->dN[axis][3][p] = inv * u * u / 2;
         } else {
             for (i = 0; i < 3; i++) {
                 mpm_real e = t[p] - (mpm_real)i, a = e < 0 ? -e : e, sign = e < 0 ? inv : -inv;
@@ -1051,11 +1068,17 @@ MPM__KERNEL void mpm__weights_axis(mpm__weights *s, int axis, int k, const mpm_r
     }
 }
 
+/* Edge of the cube over which a body's functions average the hat [cells]. */
+MPM__KERNEL mpm_real mpm__point_size(const mpm_world *w, int32_t body)
+{
+    return w->desc.basis == MPM_QUADRATIC ? 1 : w->body[body].desc.spacing * (1 / w->desc.cell);
+}
+
 /* Weights of points [first, first + n) of run r. */
 MPM__KERNEL void mpm__weigh(const mpm_world *w, const mpm_run *r, int32_t first, int n, int k, int ky,
                             mpm__weights *s)
 {
-    const mpm_real inv = 1 / w->desc.cell, l = w->body[r->body].desc.spacing * inv / 2;
+    const mpm_real inv = 1 / w->desc.cell, l = mpm__point_size(w, r->body) / 2;
     mpm_real t[MPM__LANES];
     int d, p;
     s->n = n;
@@ -1146,13 +1169,31 @@ MPM__KERNEL const int32_t *mpm__run_nodes(const mpm_world *w, const mpm_run *r)
     return w->slot + (size_t)(r - w->run) * (size_t)reach;
 }
 
-/* -1 where node a of a run is the mirror image of its slot and axis d points through the mirror. */
-MPM__KERNEL mpm_real mpm__mirror(const mpm_run *r, int a, int d, int k, int ky)
+/* 1 if node a of a run is the image of its slot behind a plane across axis d, 2 if behind a fixed side; else 0. */
+MPM__KERNEL int mpm__behind(const mpm_run *r, int a, int d, int k, int ky)
 {
     const int i[3] = {a % k, a / k % ky, a / k / ky};
-    const int first = i[d] == 0 && (r->flags >> d & 1);
-    const int last = i[d] == (d == 1 ? ky : k) - 1 && (r->flags >> (3 + d) & 1);
-    return first || last ? MPM_R(-1.0) : MPM_R(1.0);
+    const int last = i[d] == (d == 1 ? ky : k) - 1 ? r->flags >> (3 + d) & 129 : 0;
+    const int first = i[d] == 0 ? r->flags >> d & 129 : 0;
+    return ((first | last) & 1) + (first | last) / 128;
+}
+
+/* -1 where component d of a place is turned round in the image that node a of a run is. */
+MPM__KERNEL mpm_real mpm__turned(const mpm_run *r, int a, int d, int k, int ky)
+{
+    return mpm__behind(r, a, d, k, ky) ? MPM_R(-1.0) : MPM_R(1.0);
+}
+
+/* The same of a motion: across a symmetry plane the normal component, across a fixed side all. */
+MPM__KERNEL mpm_real mpm__mirror(const mpm_run *r, int a, int d, int k, int ky)
+{
+    mpm_real sign = 1;
+    int e;
+    for (e = 0; e < 3; e++) {
+        const int behind = mpm__behind(r, a, e, k, ky);
+        if (behind == 2 || (behind && e == d)) sign = -sign;
+    }
+    return sign;
 }
 
 /* Which vector of a node a sweep fetches or adds to. */
@@ -1196,20 +1237,29 @@ MPM__KERNEL void mpm__gather(const mpm_world *w, const mpm_run *r, int k, int ky
     }
 }
 
-/* Calls kernel(w, run, ..., k, ky, hoop) for every run, specialised for the support and geometry. */
+/* call(k, ky, hoop) with the support and the geometry of a world as constants. */
+#define MPM__SPECIALISED(w, call)                                                   \
+    do {                                                                            \
+        const int mpm__k = (w)->support[0], mpm__flat_here = mpm__flat(&(w)->desc); \
+        const int mpm__hoop = (w)->desc.geometry == MPM_AXISYMMETRIC;               \
+        if (!mpm__flat_here && mpm__k == 2) call(2, 2, 0);                          \
+        else if (!mpm__flat_here && mpm__k == 3) call(3, 3, 0);                     \
+        else if (!mpm__flat_here) call(4, 4, 0);                                    \
+        else if (mpm__k == 2 && !mpm__hoop) call(2, 1, 0);                          \
+        else if (mpm__k == 2) call(2, 1, 1);                                        \
+        else if (mpm__k == 3 && !mpm__hoop) call(3, 1, 0);                          \
+        else if (mpm__k == 3) call(3, 1, 1);                                        \
+        else if (!mpm__hoop) call(4, 1, 0);                                         \
+        else call(4, 1, 1);                                                         \
+    } while (0)
+
+/* call(k, ky, hoop) for every run of w, which is `run` there. */
 #define MPM__EACH_RUN(w, call)                                                      \
     do {                                                                            \
         int32_t mpm__i;                                                             \
-        const int mpm__gimp = (w)->ghost, mpm__hoop = (w)->desc.geometry == MPM_AXISYMMETRIC; \
-        const int mpm__plane = mpm__flat(&(w)->desc);                               \
         for (mpm__i = 0; mpm__i < (w)->runs; mpm__i++) {                            \
             mpm_run *run = &(w)->run[mpm__i];                                       \
-            if (!mpm__plane && !mpm__gimp) call(2, 2, 0);                           \
-            else if (!mpm__plane) call(3, 3, 0);                                    \
-            else if (!mpm__gimp && !mpm__hoop) call(2, 1, 0);                       \
-            else if (!mpm__gimp) call(2, 1, 1);                                     \
-            else if (!mpm__hoop) call(3, 1, 0);                                     \
-            else call(3, 1, 1);                                                     \
+            MPM__SPECIALISED(w, call);                                              \
         }                                                                           \
     } while (0)
 
@@ -1339,14 +1389,16 @@ MPM_API void mpm_support_of(const mpm_world *w, const mpm_run *run, int32_t i, m
     mpm__products(&one, 0, k, ky, s->N);
     mpm__gradients(&one, 0, k, ky, s->G);
     s->count = k * ky * k;
-    s->slot = mpm__run_nodes(w, run);
+    memcpy(s->slot, mpm__run_nodes(w, run), (size_t)s->count * sizeof s->slot[0]);
     for (a = 0; a < s->count; a++)
-        for (s->mirror[a] = 0, d = 0; d < 3; d++)
+        for (s->mirror[a] = s->image[a] = 0, d = 0; d < 3; d++) {
             if (mpm__mirror(run, a, d, k, ky) < 0) s->mirror[a] = (uint8_t)(s->mirror[a] | 1 << d);
+            if (mpm__turned(run, a, d, k, ky) < 0) s->image[a] = (uint8_t)(s->image[a] | 1 << d);
+        }
 }
 
-/* -1 where component d of node a of a support is that of its mirror image. */
-static inline mpm_real mpm__image(const mpm_support *s, int a, int d)
+/* -1 where component d of node a of a support moves against its node. */
+static inline mpm_real mpm__sign(const mpm_support *s, int a, int d)
 {
     return s->mirror[a] >> d & 1 ? MPM_R(-1.0) : MPM_R(1.0);
 }
@@ -1358,7 +1410,7 @@ MPM_API void mpm_support_velocity(const mpm_world *w, const mpm_support *s, mpm_
     for (a = 0; a < s->count; a++) {
         const mpm_node *n = &w->node[s->slot[a]];
         if (!(n->mass > w->desc.mass_cutoff * w->body[n->body].point_mass)) continue;
-        for (d = 0; d < 3; d++) v[d] += s->N[a] * mpm__image(s, a, d) * n->momentum[d] / n->mass;
+        for (d = 0; d < 3; d++) v[d] += s->N[a] * mpm__sign(s, a, d) * n->momentum[d] / n->mass;
     }
 }
 
@@ -1369,7 +1421,7 @@ MPM_API void mpm_push(mpm_world *w, const mpm_support *s, const mpm_real f[3])
         mpm_node *n = &w->node[s->slot[a]];
         mpm_real j[3];
         if (!(n->mass > w->desc.mass_cutoff * w->body[n->body].point_mass)) continue;
-        for (d = 0; d < 3; d++) j[d] = s->N[a] * mpm__image(s, a, d) * f[d] * w->dt;
+        for (d = 0; d < 3; d++) j[d] = s->N[a] * mpm__sign(s, a, d) * f[d] * w->dt;
         mpm__constrain(w, n, j, NULL);
         for (d = 0; d < 3; d++) {
             n->force[d] += j[d] / w->dt;
@@ -1515,36 +1567,85 @@ static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r)
     mpm__scatter(w, r, k, ky, MPM__FORCE, F);
 }
 
-/* With ghosts, internal forces cross a symmetry plane: what the nodes of this side then sum to along
-   its normal comes from the mirror image. */
+/* With ghosts, internal forces cross a symmetry plane or a fixed side: what the nodes of this side then sum to, along
+   the normal or at all, comes from the mirror image. */
 static inline void mpm__mirror_force(mpm_world *w)
 {
     const mpm_side *side = w->desc.side;
     int32_t i;
-    int d;
+    int d, fixed = 0;
+    for (d = 0; d < 6; d++) fixed |= side[d] == MPM_SIDE_FIXED;
     for (d = 0; d < 3; d++)
-        if (w->ghost && (side[2 * d] == MPM_SIDE_SYMMETRY || side[2 * d + 1] == MPM_SIDE_SYMMETRY))
+        if (w->ghost && (side[2 * d] == MPM_SIDE_SYMMETRY || side[2 * d + 1] == MPM_SIDE_SYMMETRY || fixed))
             for (i = 0; i < w->nodes; i++) w->ledger.impulse[d] += (double)(w->node[i].force[d] * w->dt);
+}
+
+/* The mean nodal velocity of the step, through which nodal forces work on the points. */
+static inline mpm_real mpm__mean_velocity(const mpm_world *w, const mpm_node *n, int d)
+{
+    const mpm_real shift = n->touch < 0 ? 0 : w->touch[n->touch].shift[d];
+    return MPM_R(0.5) * ((n->momentum[d] - n->force[d] * w->dt - shift) / n->mass + n->velocity[d]);
+}
+
+static inline int mpm__has_gravity(const mpm_world *w)
+{
+    const mpm_real *g = w->desc.gravity;
+    return g[0] < 0 || g[0] > 0 || g[1] < 0 || g[1] > 0 || g[2] < 0 || g[2] > 0;
+}
+
+/* Momentum that gravity gives a node in a step, as if it did so to all its mass, to its force or to the ledger. */
+static inline void mpm__weigh_node(mpm_world *w, mpm_node *n, const mpm_real *mass, int work)
+{
+    mpm_real j[3];
+    int d;
+    for (d = 0; d < 3; d++) j[d] = mass[d] * w->desc.gravity[d] * w->dt;
+    if (work && n->flags) mpm__constrain(w, n, j, NULL);
+    for (d = 0; d < 3; d++) {
+        if (work) w->ledger.work += (double)(j[d] * mpm__mean_velocity(w, n, d));
+        else n->force[d] += j[d] / w->dt, w->ledger.impulse[d] += (double)j[d];
+    }
+}
+
+/* What points lend to images that move the other way falls the other way: it is taken off twice. */
+static inline void mpm__weigh_images(mpm_world *w, const mpm_run *r, int work)
+{
+    mpm_support s;
+    int32_t i;
+    int a, d;
+    for (i = r->first; i < r->first + r->count; i++) {
+        mpm_support_of(w, r, i, &s);
+        for (a = 0; a < s.count; a++) {
+            mpm_real mass[3] = {0, 0, 0};
+            if (!s.mirror[a]) continue;
+            for (d = 0; d < 3; d++)
+                if (s.mirror[a] >> d & 1) mass[d] = -2 * w->points.mass[i] * s.N[a];
+            mpm__weigh_node(w, &w->node[s.slot[a]], mass, work);
+        }
+    }
+}
+
+/* Gravity on all nodes: its force, or its work once the velocities of the step are known. */
+static inline void mpm__gravity(mpm_world *w, int work)
+{
+    int32_t i;
+    for (i = 0; i < w->nodes; i++) {
+        const mpm_real m = w->node[i].mass, mass[3] = {m, m, m};
+        if (m > 0) mpm__weigh_node(w, &w->node[i], mass, work);
+    }
+    for (i = 0; i < w->runs; i++)
+        if (w->run[i].flags & 63) mpm__weigh_images(w, &w->run[i], work);
 }
 
 MPM_API void mpm_forces(mpm_world *w)
 {
-    const mpm_real *g = w->desc.gravity, dt = w->dt;
     int32_t i;
-    int d;
 #define MPM__CALL(k, ky, hoop) mpm__forces_run(w, run, k, ky, hoop)
     MPM__EACH_RUN(w, MPM__CALL);
 #undef MPM__CALL
     mpm__mirror_force(w);
     for (i = 0; i < w->runs; i++)
         if (w->body[w->run[i].body].desc.absorb) mpm__absorb_run(w, &w->run[i]);
-    if (g[0] != 0 || g[1] != 0 || g[2] != 0)
-        for (i = 0; i < w->nodes; i++)
-            for (d = 0; d < 3; d++) {
-                mpm_node *n = &w->node[i];
-                n->force[d] += n->mass * g[d];
-                w->ledger.impulse[d] += (double)(n->mass * g[d] * dt);
-            }
+    if (mpm__has_gravity(w)) mpm__gravity(w, 0);
 }
 
 MPM_API void mpm_grid_update(mpm_world *w)
@@ -1594,7 +1695,7 @@ static inline void mpm__gradient_run(mpm_world *w, const mpm_run *r)
     for (a = 0; a < k * ky * k; a++) {
         const int32_t touch = w->node[mpm__run_nodes(w, r)[a]].touch;
         if (touch < 0) continue;
-        for (d = 0; d < 3; d++) w->touch[touch].gradient[d] += F[d][a] * mpm__mirror(r, a, d, k, ky);
+        for (d = 0; d < 3; d++) w->touch[touch].gradient[d] += F[d][a] * mpm__turned(r, a, d, k, ky);
     }
 }
 
@@ -1749,7 +1850,7 @@ static inline void mpm__show_run(mpm_world *w, const mpm_run *r, int fit)
                     if (d == 1 && ky == 1) continue;
                     x[d] = (w->points.x[d][at + p] - w->desc.origin[d]) * inv -
                            (mpm_real)(r->base[d] - w->ghost + step[d]);
-                    x[d] *= mpm__mirror(r, a, d, k, ky);
+                    x[d] *= mpm__turned(r, a, d, k, ky);
                 }
                 if (fit) mpm__constrain(w, node, x, NULL); /* on a mirror the image cancels it */
                 mpm__show(w, slot[a], at + p, x, fit);
@@ -2245,30 +2346,6 @@ MPM_API void mpm_g2p(mpm_world *w)
         if (w->run[i].flags & 63) mpm__mirror_run(w, &w->run[i]);
 }
 
-/* The mean nodal velocity of the step, through which nodal forces work on the points. */
-static inline mpm_real mpm__mean_velocity(const mpm_world *w, const mpm_node *n, int d)
-{
-    const mpm_real shift = n->touch < 0 ? 0 : w->touch[n->touch].shift[d];
-    return MPM_R(0.5) * ((n->momentum[d] - n->force[d] * w->dt - shift) / n->mass + n->velocity[d]);
-}
-
-/* Work of gravity, where sides let nodes move. */
-static inline void mpm__account_gravity(mpm_world *w)
-{
-    const mpm_real *g = w->desc.gravity, dt = w->dt;
-    int32_t i;
-    int d;
-    if (!(g[0] < 0 || g[0] > 0 || g[1] < 0 || g[1] > 0 || g[2] < 0 || g[2] > 0)) return;
-    for (i = 0; i < w->nodes; i++) {
-        const mpm_node *n = &w->node[i];
-        mpm_real j[3];
-        if (!(n->mass > 0)) continue;
-        for (d = 0; d < 3; d++) j[d] = n->mass * g[d] * dt;
-        if (n->flags) mpm__constrain(w, n, j, NULL);
-        for (d = 0; d < 3; d++) w->ledger.work += (double)(j[d] * mpm__mean_velocity(w, n, d));
-    }
-}
-
 /* Energy lost in contact, in bonds and at walls. */
 static inline void mpm__account(mpm_world *w)
 {
@@ -2303,7 +2380,7 @@ MPM_API void mpm_musl(mpm_world *w)
         for (d = 0; d < 3; d++) n->velocity[d] = n->mass > 0 ? n->velocity[d] / n->mass : 0;
     }
     mpm__account(w);
-    mpm__account_gravity(w);
+    if (mpm__has_gravity(w)) mpm__gravity(w, 1);
     for (i = 0; i < w->nodes; i++)
         if (w->node[i].flags) mpm__constrain(w, &w->node[i], w->node[i].velocity, NULL);
     if (w->desc.scheme == MPM_SCHEME_CONSISTENT) mpm__settle(w, MPM__MAPPED);
@@ -2434,7 +2511,7 @@ static inline void mpm__inner_again(mpm_world *w, const mpm_run *r)
             f[0] = q->stress[0][i] * x + q->stress[5][i] * y + q->stress[4][i] * z + pull * s.N[a];
             f[1] = q->stress[5][i] * x + q->stress[1][i] * y + q->stress[3][i] * z;
             f[2] = q->stress[4][i] * x + q->stress[3][i] * y + q->stress[2][i] * z;
-            for (d = 0; d < 3; d++) w->touch[touch].inner[d] += V * mpm__image(&s, a, d) * f[d];
+            for (d = 0; d < 3; d++) w->touch[touch].inner[d] += V * mpm__sign(&s, a, d) * f[d];
         }
     }
 }
@@ -2475,17 +2552,13 @@ static inline void mpm__account_cuts(mpm_world *w)
 
 MPM_API mpm_status mpm_stress(mpm_world *w)
 {
-    const int hoop = w->desc.geometry == MPM_AXISYMMETRIC, flat = mpm__flat(&w->desc);
     int32_t b, from = 0, to = 0;
     mpm_status s;
     for (b = 0; b < w->bodies; b++, from = to) {
         while (to < w->runs && w->run[to].body == b) to++;
-        if (!flat && !w->ghost) s = mpm__stress_body(w, b, from, to, 2, 2, 0);
-        else if (!flat) s = mpm__stress_body(w, b, from, to, 3, 3, 0);
-        else if (!w->ghost && !hoop) s = mpm__stress_body(w, b, from, to, 2, 1, 0);
-        else if (!w->ghost) s = mpm__stress_body(w, b, from, to, 2, 1, 1);
-        else if (!hoop) s = mpm__stress_body(w, b, from, to, 3, 1, 0);
-        else s = mpm__stress_body(w, b, from, to, 3, 1, 1);
+#define MPM__CALL(k, ky, hoop) s = mpm__stress_body(w, b, from, to, k, ky, hoop)
+        MPM__SPECIALISED(w, MPM__CALL);
+#undef MPM__CALL
         if (s < 0) return s;
     }
     mpm__account_cuts(w);
@@ -2566,20 +2639,21 @@ static inline int32_t mpm__key_at_side(mpm_world *w, int32_t i)
         if (t < 0) *x = d->origin[a];
         if (t > (mpm_real)d->cells[a]) *x = mpm__grid_high(d, a);
         t = t < 0 ? 0 : t < (mpm_real)d->cells[a] ? t : (mpm_real)d->cells[a];
-        at[a] = w->ghost ? (int32_t)(t + MPM_R(0.5)) : t < (mpm_real)d->cells[a] ? (int32_t)t : d->cells[a] - 1;
+        at[a] = w->support[0] == 3 ? (int32_t)(t + MPM_R(0.5))
+                                   : t < (mpm_real)d->cells[a] ? (int32_t)t : d->cells[a] - 1;
     }
     if (d->geometry == MPM_AXISYMMETRIC && !(w->points.x[0][i] > 0)) return -1; /* no ring without radius */
     return (at[2] * w->nodes_per_axis[1] + at[1]) * w->nodes_per_axis[0] + at[0];
 }
 
 /* The base node of every active point of a body, or -1 outside the grid. A point's base is the
-   lowest node it touches: of its cell with linear functions, of the nearest node's lower
-   neighbour with GIMP. */
+   lowest node it touches: of its cell with linear functions, of the nearest node's lower neighbour with GIMP and
+   quadratic splines, the one below its cell with cubic ones. */
 static inline void mpm__keys(mpm_world *w, const mpm_body *b)
 {
     const mpm_desc *d = &w->desc;
     const mpm_real *x = w->points.x[0], *y = w->points.x[1], *z = w->points.x[2];
-    const mpm_real inv = 1 / d->cell, shift = w->ghost ? MPM_R(0.5) : 0;
+    const mpm_real inv = 1 / d->cell, shift = w->support[0] == 3 ? MPM_R(0.5) : 0;
     const mpm_real hx = (mpm_real)d->cells[0], hz = (mpm_real)d->cells[2];
     const mpm_real ox = d->origin[0], oy = d->origin[1], oz = d->origin[2];
     const int32_t nx = w->nodes_per_axis[0], ny = w->nodes_per_axis[1];
@@ -2589,7 +2663,7 @@ static inline void mpm__keys(mpm_world *w, const mpm_body *b)
     for (i = b->first; i < b->first + b->active; i++) {
         mpm_real tx = (x[i] - ox) * inv, ty = flat ? 0 : (y[i] - oy) * inv, tz = (z[i] - oz) * inv;
         int inside = (tx >= 0) & (tx < hx) & (ty >= 0) & (ty < hy) & (tz >= 0) & (tz < hz);
-        /* with GIMP truncation of t + 1/2 gives the nearest node, whose lower neighbour is, with
+        /* truncation of t gives the cell's lower node, of t + 1/2 the nearest node; its lower neighbour is, with
            the ghost layer counted, of the same number */
         int32_t ix = (int32_t)(inside ? tx + shift : 0), iz = (int32_t)(inside ? tz + shift : 0);
         int32_t iy = flat ? 0 : (int32_t)(inside ? ty + shift : 0);
@@ -2694,23 +2768,24 @@ static inline int32_t mpm__slot(mpm_world *w, int32_t body, const int32_t *at)
     return s;
 }
 
-/* Gives a run its slots. Beyond a symmetry plane there are no nodes: what points lend to a ghost
+/* Gives a run its slots. Beyond a symmetry plane or a fixed side there are no nodes: what points lend to a ghost
    there belongs, mirrored, to the node on this side. */
 static inline int mpm__run_slots(mpm_world *w, mpm_run *r, int32_t *slot)
 {
     const int *n = w->support;
     int32_t at[3];
-    int i[3], d, mirrored[3][3];
+    int i[3], d, mirrored[3][4];
     for (d = 0; d < 3; d++) {
         int last = w->nodes_per_axis[d] - 1 - w->ghost;
         for (i[0] = 0; i[0] < n[d]; i[0]++) {
             int g = r->base[d] + i[0];
-            if (g < w->ghost && w->desc.side[2 * d] == MPM_SIDE_SYMMETRY) {
+            const mpm_side low = w->desc.side[2 * d], high = w->desc.side[2 * d + 1];
+            if (g < w->ghost && (low == MPM_SIDE_SYMMETRY || low == MPM_SIDE_FIXED)) {
                 g = 2 * w->ghost - g;
-                r->flags |= 1 << d;
-            } else if (g > last && w->desc.side[2 * d + 1] == MPM_SIDE_SYMMETRY) {
+                r->flags |= (low == MPM_SIDE_FIXED ? 129 : 1) << d;
+            } else if (g > last && (high == MPM_SIDE_SYMMETRY || high == MPM_SIDE_FIXED)) {
                 g = 2 * last - g;
-                r->flags |= 8 << d;
+                r->flags |= (high == MPM_SIDE_FIXED ? 1032 : 8) << d;
             }
             mirrored[d][i[0]] = g;
         }
@@ -2998,9 +3073,9 @@ MPM_API mpm_real mpm_wave_speed_s(mpm_real young, mpm_real poisson, mpm_real den
 static inline void mpm__grid_sizes(mpm_world *w)
 {
     int a;
-    w->ghost = w->desc.basis == MPM_GIMP ? 1 : 0;
+    w->ghost = w->desc.basis == MPM_LINEAR ? 0 : 1;
     for (a = 0; a < 3; a++) {
-        w->support[a] = w->ghost ? 3 : 2;
+        w->support[a] = w->desc.basis == MPM_CUBIC ? 4 : 2 + w->ghost;
         w->nodes_per_axis[a] = w->desc.cells[a] + 1 + 2 * w->ghost;
     }
     if (mpm__flat(&w->desc)) {

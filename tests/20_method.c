@@ -295,8 +295,8 @@ static void normals(void)
 
 int main(void)
 {
-    free_flight(MPM_LINEAR, "linear");
-    free_flight(MPM_GIMP, "GIMP");
+    int basis;
+    for (basis = 0; basis < MPM_BASES; basis++) free_flight((mpm_basis)basis, scene_basis((mpm_basis)basis));
     on_planes();
     spin();
     waves();

@@ -63,7 +63,7 @@ static void bad_choices(void)
     d.geometry = (mpm_geometry)(MPM_AXISYMMETRIC + 1);
     refuses_desc("geometry", d, MPM_ERR_ARGUMENT);
     d = good;
-    d.basis = (mpm_basis)(MPM_GIMP + 1);
+    d.basis = MPM_BASES;
     refuses_desc("basis", d, MPM_ERR_ARGUMENT);
     d = good;
     d.contact.law = (mpm_contact_law)(MPM_CONTACT_USER + 1);

@@ -51,7 +51,8 @@ static rebound thrown(int at, int round, mpm_basis basis, double speed, double f
     return r;
 }
 
-/* Walls and bars beside a mirror, whose only error is that of the stress work. */
+/* Walls and bars beside a mirror, whose only error is that of the stress work. Splines let bodies meet two cells apart
+   and lose what the gap takes, and stick to a mirror as to themselves. */
 static void rebounds(mpm_basis basis, double speed, double factor)
 {
     static const char *const name[] = {"wall", "mirror", "bar"};
@@ -60,10 +61,10 @@ static void rebounds(mpm_basis basis, double speed, double factor)
     for (at = WALL; at <= BAR; at += BAR - WALL) {
         const rebound r = thrown(at, 0, basis, speed, factor);
         char line[120];
-        snprintf(line, sizeof line, "%s on a %s, %g m/s, dt %g", basis ? "GIMP" : "linear", name[at], speed, factor);
+        snprintf(line, sizeof line, "%s on a %s, %g m/s, dt %g", scene_basis(basis), name[at], speed, factor);
         printf("# %s: %.4f of the speed back (mirror %.4f), energy missed %.4f (%.4f)\n", line, r.ratio, mirror.ratio,
                r.energy, mirror.energy);
-        CHECK_TRUE(line, r.ratio <= 1 && r.ratio > 0.9 * mirror.ratio);
+        CHECK_TRUE(line, r.ratio <= 1 && r.ratio > (basis <= MPM_GIMP ? 0.9 * mirror.ratio : 0.59));
         CHECK_NEAR("... energy", r.energy, 0, 0.005 + fabs(mirror.energy));
     }
 }
@@ -117,13 +118,13 @@ static void three_bodies(void)
 {
     double v[3][3];
     int law, basis, order, k;
-    for (basis = MPM_LINEAR; basis <= MPM_GIMP; basis++)
+    for (basis = 0; basis < MPM_BASES; basis++)
         for (law = MPM_CONTACT_FRICTION; law <= MPM_CONTACT_WELD; law++) {
             double apart = 0;
             for (order = 0; order < 3; order++) foil((mpm_contact_law)law, (mpm_basis)basis, order, v[order]);
             for (order = 1; order < 3; order++)
                 for (k = 0; k < 3; k++) apart = check_worst(apart, fabs(v[order][k] - v[0][k]) / 100);
-            printf("# law %d, %s: blocks at %.3f and %.3f m/s, foil %.2g\n", law, basis ? "GIMP" : "linear", v[0][0],
+            printf("# law %d, %s: blocks at %.3f and %.3f m/s, foil %.2g\n", law, scene_basis((mpm_basis)basis), v[0][0],
                    v[0][2], v[0][1]);
             CHECK_NEAR("three bodies at a node: whatever their numbers", apart, 0, 1e7 * eps);
             CHECK_NEAR("... the foil stays in the middle", v[0][1] / 100, 0, 1e6 * eps);
@@ -231,8 +232,8 @@ static void bonded_spheres(void)
 int main(void)
 {
     int b;
-    for (b = MPM_LINEAR; b <= MPM_GIMP; b++) {
-        rebounds((mpm_basis)b, 10, 0.1);
+    for (b = 0; b < MPM_BASES; b++) {
+        if (b <= MPM_GIMP) rebounds((mpm_basis)b, 10, 0.1);
         rebounds((mpm_basis)b, 50, 0.1);
         rebounds((mpm_basis)b, 50, 0.5);
         rebounds((mpm_basis)b, 1000, 0.5);

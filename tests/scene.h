@@ -31,6 +31,15 @@ static inline mpm_body_desc scene_body(mpm_material *m, mpm_shape shape, double 
     return b;
 }
 
+/* The word of a basis. */
+static inline const char *scene_basis(mpm_basis basis)
+{
+#define SCENE_WORD(name, word, text) word,
+    static const char *const words[] = {MPM_BASIS_LIST(SCENE_WORD) "?"};
+#undef SCENE_WORD
+    return words[basis < MPM_BASES ? basis : MPM_BASES];
+}
+
 /* A grid of nx, ny, nz cells whose lowest corner is (x, y, z). */
 static inline mpm_desc scene_grid(double cell, int nx, int ny, int nz, double x, double y, double z)
 {

@@ -39,7 +39,7 @@
      setting up                mpm_init, mpm_body_add, mpm_body_add_points, mpm_contact_set, mpm_field_take
      the step                  mpm_step = locate, p2g, forces, grid_update, contact_find, contact_apply, g2p,
                                musl, stress, move
-     between the phases        mpm_support_of, mpm_push, mpm_node_push, mpm_pair_push: what extensions use
+     between the phases        mpm_support_of, mpm_support_at, mpm_push, mpm_node_push, mpm_pair_push: for extensions
      looking at it, restart    mpm_body_totals; mpm_blobs, mpm_restored
      implementation            in the order of the step; then locate, memory, shapes, bodies, checks
 
@@ -158,7 +158,9 @@ typedef double mpm_real;
 #define mpm_contact_of mpm_contact_of_f32
 #define mpm_field_take mpm_field_take_f32
 #define mpm_support_of mpm_support_of_f32
+#define mpm_support_at mpm_support_at_f32
 #define mpm_support_velocity mpm_support_velocity_f32
+#define mpm_support_work mpm_support_work_f32
 #define mpm_push mpm_push_f32
 #define mpm_node_push mpm_node_push_f32
 #define mpm_node_find mpm_node_find_f32
@@ -868,6 +870,11 @@ typedef struct mpm_support {
    and mpm_move. Test: 26_extend. */
 MPM_API void mpm_support_of(const mpm_world *w, const mpm_run *run, int32_t i, mpm_support *s);
 
+/* Of any place x on the grid [length], as body `body` has it: its slots alone, so that the N sum to less than 1 where
+   some node near x carries nothing of the body. 1; 0 if it has none there, or x is off the grid. Between mpm_locate and
+   mpm_move. Test: 26_extend. */
+MPM_API int mpm_support_at(const mpm_world *w, int32_t body, const mpm_real x[3], mpm_support *s);
+
 /* The grid's velocity at the point, sum N_I P_I / m_I. After mpm_p2g. Test: 26_extend. */
 MPM_API void mpm_support_velocity(const mpm_world *w, const mpm_support *s, mpm_real v[3]);
 
@@ -875,6 +882,10 @@ MPM_API void mpm_support_velocity(const mpm_world *w, const mpm_support *s, mpm_
    rest is in the ledger: in `impulse`, its work in `walls` (negative: brought in). Between mpm_p2g and
    mpm_grid_update. Test: 26_extend. */
 MPM_API void mpm_push(mpm_world *w, const mpm_support *s, const mpm_real f[3]);
+
+/* The work [energy] that such a force f does in this step: what the ledger has booked as `walls` (with the other sign),
+   for contact of your own to book elsewhere. Between mpm_musl and mpm_move. Test: 26_extend. */
+MPM_API double mpm_support_work(const mpm_world *w, const mpm_support *s, const mpm_real f[3]);
 
 /* Momentum j to a slot from outside: rigid tools, prescribed velocities. What symmetry and fixed sides forbid is taken
    out of j; a wall, which has acted by then, resists it from the next step on. The rest is in the ledger: in
@@ -1378,23 +1389,96 @@ static inline void mpm__walls_mapped(mpm_world *w, mpm_node *n)
     }
 }
 
+/* The mean nodal velocity of the step, through which nodal forces work on the points. */
+static inline mpm_real mpm__mean_velocity(const mpm_world *w, const mpm_node *n, int d)
+{
+    const mpm_real shift = n->touch < 0 ? 0 : w->touch[n->touch].shift[d];
+    return MPM_R(0.5) * ((n->momentum[d] - n->force[d] * w->dt - shift) / n->mass + n->velocity[d]);
+}
+
 /* ---- what extensions use ---------------------------------------------------------------------- */
 
-MPM_API void mpm_support_of(const mpm_world *w, const mpm_run *run, int32_t i, mpm_support *s)
+/* The node that stands for node g of axis d. Beyond a symmetry plane or a fixed side there are none: what points lend
+   to a ghost there belongs, mirrored, to the node on this side; the run's flags then say so. */
+static inline int32_t mpm__image_node(const mpm_world *w, int d, int32_t g, int32_t *flags)
+{
+    const int32_t last = w->nodes_per_axis[d] - 1 - w->ghost;
+    const mpm_side low = w->desc.side[2 * d], high = w->desc.side[2 * d + 1];
+    if (g < w->ghost && (low == MPM_SIDE_SYMMETRY || low == MPM_SIDE_FIXED)) {
+        *flags |= (low == MPM_SIDE_FIXED ? 129 : 1) << d;
+        return 2 * w->ghost - g;
+    }
+    if (g > last && (high == MPM_SIDE_SYMMETRY || high == MPM_SIDE_FIXED)) {
+        *flags |= (high == MPM_SIDE_FIXED ? 1032 : 8) << d;
+        return 2 * last - g;
+    }
+    return g;
+}
+
+/* Fills a support with values, gradients and images from the weights of a place whose base and sides are a run's. */
+static inline void mpm__support(const mpm_world *w, const mpm_run *run, const mpm__weights *one, mpm_support *s)
 {
     const int k = w->support[0], ky = w->support[1];
-    mpm__weights one;
     int a, d;
-    mpm__weigh(w, run, i, 1, k, ky, &one);
-    mpm__products(&one, 0, k, ky, s->N);
-    mpm__gradients(&one, 0, k, ky, s->G);
+    mpm__products(one, 0, k, ky, s->N);
+    mpm__gradients(one, 0, k, ky, s->G);
     s->count = k * ky * k;
-    memcpy(s->slot, mpm__run_nodes(w, run), (size_t)s->count * sizeof s->slot[0]);
     for (a = 0; a < s->count; a++)
         for (s->mirror[a] = s->image[a] = 0, d = 0; d < 3; d++) {
             if (mpm__mirror(run, a, d, k, ky) < 0) s->mirror[a] = (uint8_t)(s->mirror[a] | 1 << d);
             if (mpm__turned(run, a, d, k, ky) < 0) s->image[a] = (uint8_t)(s->image[a] | 1 << d);
         }
+}
+
+MPM_API void mpm_support_of(const mpm_world *w, const mpm_run *run, int32_t i, mpm_support *s)
+{
+    mpm__weights one;
+    mpm__weigh(w, run, i, 1, w->support[0], w->support[1], &one);
+    mpm__support(w, run, &one, s);
+    memcpy(s->slot, mpm__run_nodes(w, run), (size_t)s->count * sizeof s->slot[0]);
+}
+
+/* Takes the nodes without a slot out of a support. */
+static inline void mpm__support_close(mpm_support *s)
+{
+    int a, d, n = 0;
+    for (a = 0; a < s->count; a++) {
+        if (s->slot[a] < 0) continue;
+        s->slot[n] = s->slot[a];
+        s->N[n] = s->N[a];
+        for (d = 0; d < 3; d++) s->G[d][n] = s->G[d][a];
+        s->image[n] = s->image[a];
+        s->mirror[n++] = s->mirror[a];
+    }
+    s->count = n;
+}
+
+MPM_API int mpm_support_at(const mpm_world *w, int32_t body, const mpm_real x[3], mpm_support *s)
+{
+    const int *n = w->support;
+    mpm__weights one;
+    mpm_run at;
+    int32_t node[3][4];
+    int i, d;
+    s->count = 0;
+    memset(&at, 0, sizeof at);
+    one.n = 1;
+    for (d = 0; d < 3; d++) {
+        const int32_t last = w->nodes_per_axis[d] - n[d];
+        mpm_real t = n[d] == 1 ? 0 : (x[d] - w->desc.origin[d]) / w->desc.cell + (n[d] == 3 ? MPM_R(0.5) : 0);
+        if (!(t >= 0 && t <= (mpm_real)last + 1)) return 0;
+        at.base[d] = (int32_t)t < last ? (int32_t)t : last;
+        t -= (n[d] == 3 ? MPM_R(0.5) : 0) + (mpm_real)(at.base[d] - (n[d] == 1 ? 0 : w->ghost));
+        mpm__weights_axis(&one, d, n[d], &t, mpm__point_size(w, body) / 2, 1 / w->desc.cell);
+        for (i = 0; i < n[d]; i++) node[d][i] = mpm__image_node(w, d, at.base[d] + i, &at.flags);
+    }
+    mpm__support(w, &at, &one, s);
+    for (i = 0; i < s->count; i++) {
+        const int32_t ix = node[0][i % n[0]], iy = node[1][i / n[0] % n[1]], iz = node[2][i / n[0] / n[1]];
+        s->slot[i] = mpm_node_find(w, (iz * w->nodes_per_axis[1] + iy) * w->nodes_per_axis[0] + ix, body);
+    }
+    mpm__support_close(s);
+    return s->count > 0;
 }
 
 /* -1 where component d of node a of a support moves against its node. */
@@ -1429,6 +1513,21 @@ MPM_API void mpm_push(mpm_world *w, const mpm_support *s, const mpm_real f[3])
             w->ledger.impulse[d] += (double)j[d];
         }
     }
+}
+
+MPM_API double mpm_support_work(const mpm_world *w, const mpm_support *s, const mpm_real f[3])
+{
+    double work = 0;
+    int a, d;
+    for (a = 0; a < s->count; a++) {
+        const mpm_node *n = &w->node[s->slot[a]];
+        mpm_real j[3];
+        if (!(n->mass > w->desc.mass_cutoff * w->body[n->body].point_mass)) continue;
+        for (d = 0; d < 3; d++) j[d] = s->N[a] * mpm__sign(s, a, d) * f[d] * w->dt;
+        mpm__constrain(w, n, j, NULL);
+        for (d = 0; d < 3; d++) work += (double)(j[d] * mpm__mean_velocity(w, n, d));
+    }
+    return work;
 }
 
 MPM_API int32_t mpm_node_find(const mpm_world *w, int32_t index, int32_t body)
@@ -1578,13 +1677,6 @@ static inline void mpm__mirror_force(mpm_world *w)
     for (d = 0; d < 3; d++)
         if (w->ghost && (side[2 * d] == MPM_SIDE_SYMMETRY || side[2 * d + 1] == MPM_SIDE_SYMMETRY || fixed))
             for (i = 0; i < w->nodes; i++) w->ledger.impulse[d] += (double)(w->node[i].force[d] * w->dt);
-}
-
-/* The mean nodal velocity of the step, through which nodal forces work on the points. */
-static inline mpm_real mpm__mean_velocity(const mpm_world *w, const mpm_node *n, int d)
-{
-    const mpm_real shift = n->touch < 0 ? 0 : w->touch[n->touch].shift[d];
-    return MPM_R(0.5) * ((n->momentum[d] - n->force[d] * w->dt - shift) / n->mass + n->velocity[d]);
 }
 
 static inline int mpm__has_gravity(const mpm_world *w)
@@ -2768,28 +2860,14 @@ static inline int32_t mpm__slot(mpm_world *w, int32_t body, const int32_t *at)
     return s;
 }
 
-/* Gives a run its slots. Beyond a symmetry plane or a fixed side there are no nodes: what points lend to a ghost
-   there belongs, mirrored, to the node on this side. */
+/* Gives a run its slots. */
 static inline int mpm__run_slots(mpm_world *w, mpm_run *r, int32_t *slot)
 {
     const int *n = w->support;
-    int32_t at[3];
-    int i[3], d, mirrored[3][4];
-    for (d = 0; d < 3; d++) {
-        int last = w->nodes_per_axis[d] - 1 - w->ghost;
-        for (i[0] = 0; i[0] < n[d]; i[0]++) {
-            int g = r->base[d] + i[0];
-            const mpm_side low = w->desc.side[2 * d], high = w->desc.side[2 * d + 1];
-            if (g < w->ghost && (low == MPM_SIDE_SYMMETRY || low == MPM_SIDE_FIXED)) {
-                g = 2 * w->ghost - g;
-                r->flags |= (low == MPM_SIDE_FIXED ? 129 : 1) << d;
-            } else if (g > last && (high == MPM_SIDE_SYMMETRY || high == MPM_SIDE_FIXED)) {
-                g = 2 * last - g;
-                r->flags |= (high == MPM_SIDE_FIXED ? 1032 : 8) << d;
-            }
-            mirrored[d][i[0]] = g;
-        }
-    }
+    int32_t at[3], mirrored[3][4];
+    int i[3], d;
+    for (d = 0; d < 3; d++)
+        for (i[0] = 0; i[0] < n[d]; i[0]++) mirrored[d][i[0]] = mpm__image_node(w, d, r->base[d] + i[0], &r->flags);
     for (i[2] = 0; i[2] < n[2]; i[2]++)
         for (i[1] = 0; i[1] < n[1]; i[1]++)
             for (i[0] = 0; i[0] < n[0]; i[0]++) {

@@ -156,6 +156,30 @@ static double slowest(const mpm_world *w)
     return worst;
 }
 
+/* The furthest that the support of a point's place is from the point's own; nothing is found off the grid. */
+static double places(const mpm_world *w)
+{
+    const mpm_real off[3] = {0, 0, MPM_R(-1.5)};
+    double worst = 0;
+    mpm_support one, two;
+    int32_t r, i;
+    int a, b, d;
+    CHECK_EQUAL("... none off the grid", mpm_support_at(w, 0, off, &two), 0);
+    for (r = 0; r < w->runs; r++)
+        for (i = w->run[r].first; i < w->run[r].first + w->run[r].count; i++) {
+            mpm_real x[3], v[3], u[3];
+            for (d = 0; d < 3; d++) x[d] = w->points.x[d][i];
+            mpm_support_of(w, &w->run[r], i, &one);
+            if (!mpm_support_at(w, 0, x, &two) || one.count != two.count) return 1;
+            mpm_support_velocity(w, &one, v);
+            mpm_support_velocity(w, &two, u);
+            for (d = 0; d < 3; d++) worst = check_worst(worst, fabs((double)(v[d] - u[d])) / 10);
+            for (a = b = 0; a < one.count; a++, b++)
+                if (one.slot[a] != two.slot[b] || one.mirror[a] != two.mirror[b]) worst = 1;
+        }
+    return worst;
+}
+
 /* A ball in the corner of three mirrors, where supports reach through all of them. */
 static void supports(mpm_geometry geometry, mpm_basis basis, const char *name)
 {
@@ -174,8 +198,9 @@ static void supports(mpm_geometry geometry, mpm_basis basis, const char *name)
     support_of_points(&w, &sum, &place, &slope, &mirrors);
     if (basis <= MPM_GIMP) /* splines feel a mirror from further off */
         CHECK_NEAR("... the grid moves as one with its points", slowest(&w), 0, 1000 * eps);
+    CHECK_NEAR("... a place is supported as a point there", places(&w), 0, 100 * eps);
     CHECK_NEAR("... N sums to 1, gradients to 0", sum, 0, 64 * eps);
-    CHECK_NEAR("... places come back, mirror images counted [um]", place, 0, basis == MPM_LINEAR ? 1e5 * eps : 64 * eps);
+    CHECK_NEAR("... places come back, mirror images counted [um]", place, 0, (basis == MPM_LINEAR ? 1e5 : 64) * eps);
     CHECK_NEAR("... gradients of the place are 1", slope, 0, 256 * eps);
     CHECK_TRUE("... mirrors are told, but for linear functions", (mirrors > 0) == (basis != MPM_LINEAR));
     nodes_found(&w);
@@ -204,20 +229,49 @@ static void as_gravity(mpm_world *w)
 static void nothing(mpm_world *w) { (void)w; }
 
 /* A force that is another at every point: it turns, squeezes and moves the body. */
+static void uneven_at(const mpm_world *w, int32_t i, mpm_real *f)
+{
+    const mpm_real m = w->points.mass[i], z = w->points.x[2][i] - 5, x = w->points.x[0][i] - 5;
+    f[0] = m * 4000 * z;
+    f[1] = m * 1000;
+    f[2] = m * (2000 - 9000 * x * z);
+}
+
 static void uneven(mpm_world *w)
 {
     int32_t r, i;
     for (r = 0; r < w->runs; r++)
         for (i = w->run[r].first; i < w->run[r].first + w->run[r].count; i++) {
-            const mpm_real m = w->points.mass[i], z = w->points.x[2][i] - 5, x = w->points.x[0][i] - 5;
             mpm_support s;
             mpm_real f[3];
             mpm_support_of(w, &w->run[r], i, &s);
-            f[0] = m * 4000 * z;
-            f[1] = m * 1000;
-            f[2] = m * (2000 - 9000 * x * z);
+            uneven_at(w, i, f);
             mpm_push(w, &s, f);
         }
+}
+
+/* One more such step: the work of the forces, one by one, over what the ledger books for all. */
+static double works(mpm_world *w)
+{
+    const double before = w->ledger.walls;
+    double work = 0;
+    int32_t r, i;
+    mpm_locate(w, step);
+    mpm_p2g(w);
+    mpm_forces(w);
+    uneven(w);
+    mpm_grid_update(w);
+    mpm_g2p(w);
+    mpm_musl(w);
+    for (r = 0; r < w->runs; r++)
+        for (i = w->run[r].first; i < w->run[r].first + w->run[r].count; i++) {
+            mpm_support s;
+            mpm_real f[3];
+            mpm_support_of(w, &w->run[r], i, &s);
+            uneven_at(w, i, f);
+            work += mpm_support_work(w, &s, f);
+        }
+    return work / (before - w->ledger.walls);
 }
 
 /* A ball of aluminium, elastic or without stress, flying. */
@@ -272,6 +326,8 @@ static void outer_force(mpm_geometry geometry, mpm_basis basis, mpm_side floor, 
     CHECK_TRUE("... energy is brought in", fabs(w.ledger.walls) > 1e-3 * t0.kinetic);
     CHECK_NEAR("... and none is missing", (energy(&w) - e0) / (t0.kinetic + t1.kinetic + t1.internal), 0,
                !stress ? 2e3 * eps : geometry == MPM_AXISYMMETRIC ? 2e-3 : 2e-4); /* in proportion to the step */
+    if (floor != MPM_SIDE_WALL)
+        CHECK_RELATIVE("... the work of each is its part of the ledger's", works(&w), 1, 1e5 * eps);
     mpm_free(&w);
 }
 

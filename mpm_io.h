@@ -347,8 +347,8 @@ MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int
 #include <string.h>
 #include <time.h>
 
-/* C99 can neither make a folder, nor open a file only if it is new, nor wait for the disk: these are the only
-   lines that know the system. */
+/* C99 can neither make a folder, nor open a file only if it is new, nor wait for the disk, nor replace a file: these
+   are the only lines that know the system. */
 #if defined(_WIN32)
 #include <direct.h>
 #include <fcntl.h>
@@ -374,6 +374,18 @@ static inline int mpm__io_reach_disk(const char *path)
     const int file = _open(path, _O_WRONLY | _O_BINARY), good = file >= 0 && _commit(file) == 0;
     return file >= 0 && _close(file) == 0 && good;
 }
+
+/* rename does not replace there. Declared as windows.h has it, whose macros are no business of who includes this. */
+#ifdef __cplusplus
+extern "C"
+#endif
+__declspec(dllimport) int __stdcall MoveFileExA(const char *from, const char *to, unsigned long flags);
+
+static inline int mpm__io_replace(const char *from, const char *to)
+{
+    const unsigned long replace_existing = 1;
+    return MoveFileExA(from, to, replace_existing) != 0;
+}
 #elif defined(__unix__) || defined(__APPLE__)
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -395,11 +407,15 @@ static inline int mpm__io_reach_disk(const char *path)
     const int file = open(path, O_WRONLY), good = file >= 0 && (fsync(file) == 0 || errno == EINVAL);
     return file >= 0 && close(file) == 0 && good;
 }
+
+/* Gives a file the name of another, which it replaces at once: there is always one of the two. */
+static inline int mpm__io_replace(const char *from, const char *to) { return rename(from, to) == 0; }
 #else
 #define MPM__IO_PARTS "/"
 static inline int mpm__io_mkdir(const char *path) { return (void)path, 0; }
 static inline FILE *mpm__io_create(const char *path) { return fopen(path, "wbx"); } /* C11 */
 static inline int mpm__io_reach_disk(const char *path) { return (void)path, 1; }
+static inline int mpm__io_replace(const char *from, const char *to) { return rename(from, to) == 0; }
 #endif
 
 #ifdef __cplusplus
@@ -598,10 +614,7 @@ MPM_API mpm_status mpm_io_close(mpm_io_file *f, mpm_fault *fault)
     good = fflush(f->stream) == 0 && !ferror(f->stream);
     good = fclose(f->stream) == 0 && good;
     good = good && mpm__io_reach_disk(part);
-#ifdef _WIN32
-    if (good) remove(f->path); /* rename does not replace there */
-#endif
-    named = good && rename(part, f->path) == 0;
+    named = good && mpm__io_replace(part, f->path);
     if (!named) remove(part);
     mpm__io_forget(f);
     if (named) return MPM_OK;

@@ -265,6 +265,7 @@ static void test_failures(void)
     static char lengthy[6000];
     mpm_io_csv t;
     mpm_io_json j;
+    mpm_io_file file;
     const unsigned char c[3] = {0, 0, 0};
     mpm_io_vtu_desc d = mpm_io_vtu_desc_default();
     mpm_fault f;
@@ -287,6 +288,13 @@ static void test_failures(void)
     mpm_io_make_directory(FOLDER "/taken", NULL); /* a folder has the name: renaming must fail */
     equal("name taken by a folder", mpm_io_png(FOLDER "/taken", c, 1, 1, NULL, &f), MPM_ERR_FILE);
     equal("its .part is removed", parts_in(FOLDER), 0);
+    holds("the folder stays", mpm_io_open(&file, FOLDER "/taken/x", &f) == MPM_OK);
+    mpm_io_drop(&file);
+    write_text(FOLDER "/old.csv", "old");
+    equal("a file that was there", mpm_io_open(&file, FOLDER "/old.csv", &f), MPM_OK);
+    mpm_io_put(&file, "new");
+    equal("... is replaced", mpm_io_close(&file, &f), MPM_OK);
+    holds("... as a whole", file_is(FOLDER "/old.csv", "new"));
 
     write_text(FOLDER "/keep.csv", "precious");
     mpm_io_csv_begin(&t, FOLDER "/keep.csv", "a,b", NULL, NULL);

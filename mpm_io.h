@@ -211,8 +211,9 @@ MPM_API void mpm_io_json_string(mpm_io_json *j, const char *key, const char *val
 /* key: { ... } - the pairs between open and close belong to the inner object. Test: 40_io "json". */
 MPM_API void mpm_io_json_open(mpm_io_json *j, const char *key);
 MPM_API void mpm_io_json_close(mpm_io_json *j);
-/* Closes whatever is open and gives the file its name. MPM_ERR_FILE when any write failed,
-   MPM_ERR_ARGUMENT when open and close did not match: then there is no file. Test: 40_io "json". */
+/* Closes the object and gives the file its name. MPM_ERR_FILE when any write failed, MPM_ERR_ARGUMENT when open and
+   close did not match: then there is no file. After a begin that failed: its status again, and the fault stays as
+   begin left it, so that one check, here, tells why. Test: 40_io "json", "failures". */
 MPM_API mpm_status mpm_io_json_end(mpm_io_json *j, mpm_fault *fault);
 
 /* ---- CSV ----------------------------------------------------------------------------------- */
@@ -222,7 +223,7 @@ typedef struct mpm_io_csv {
     mpm_io_file file;
     int columns;       /* as counted in the header */
     int cells;         /* written in the present row; the last one of a row ends the line */
-    mpm_status status; /* first thing that went wrong */
+    mpm_status status; /* of begin: what end returns if that failed */
 } mpm_io_csv;
 
 /* Starts a table. `columns` is the header line: names with commas between. A note other than NULL
@@ -237,7 +238,7 @@ MPM_API void mpm_io_csv_text(mpm_io_csv *t, const char *value);
 /* A whole row at once: values[columns]. Test: 40_io "csv". */
 MPM_API void mpm_io_csv_row(mpm_io_csv *t, const mpm_real *values);
 /* Gives the file its name. MPM_ERR_FILE when a write failed, MPM_ERR_ARGUMENT when the last row is
-   not full: then there is no file. Test: 40_io "csv". */
+   not full: then there is no file. After a begin that failed as with JSON. Test: 40_io "csv", "failures". */
 MPM_API mpm_status mpm_io_csv_end(mpm_io_csv *t, mpm_fault *fault);
 /* Instead of end: gives the table up, even in the middle of a row or after an error. What is written so
    far is removed; a file that had the name before stays as it was. Test: 40_io "dropped". */
@@ -775,7 +776,7 @@ MPM_API void mpm_io_json_open(mpm_io_json *j, const char *key)
 MPM_API void mpm_io_json_close(mpm_io_json *j)
 {
     int i;
-    if (--j->depth < 1) j->status = MPM_ERR_ARGUMENT;
+    if (--j->depth < 1 && j->status == MPM_OK) j->status = MPM_ERR_ARGUMENT;
     mpm_io_put(&j->file, j->empty ? "" : "\n");
     for (i = 0; i < j->depth && !j->empty; i++) mpm_io_put(&j->file, "  ");
     mpm_io_put(&j->file, "}");
@@ -784,7 +785,9 @@ MPM_API void mpm_io_json_close(mpm_io_json *j)
 
 MPM_API mpm_status mpm_io_json_end(mpm_io_json *j, mpm_fault *fault)
 {
+    if (!j->file.stream && j->status < 0) return j->status;
     if (j->file.stream && (j->status < 0 || j->depth != 1)) {
+        j->status = MPM_ERR_ARGUMENT;
         mpm_io_drop(&j->file);
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "depth of json object", (mpm_real)j->depth, -1);
     }
@@ -853,6 +856,7 @@ MPM_API void mpm_io_csv_row(mpm_io_csv *t, const mpm_real *values)
 
 MPM_API mpm_status mpm_io_csv_end(mpm_io_csv *t, mpm_fault *fault)
 {
+    if (t->status < 0) return t->status;
     if (t->file.stream && t->cells != 0) {
         mpm_io_drop(&t->file);
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "cells in the last row", (mpm_real)t->cells, -1);

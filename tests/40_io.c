@@ -275,9 +275,14 @@ static void test_failures(void)
     holds("fault is about the path", strncmp(f.field, "path", 4) == 0);
     mpm_io_csv_integer(&t, 1);
     equal("csv: the error sticks", mpm_io_csv_end(&t, &f), MPM_ERR_FILE);
+    holds("... and so does its reason", strcmp(f.field, "path: cannot be made") == 0);
     equal("json nowhere", mpm_io_json_begin(&j, nowhere, &f), MPM_ERR_FILE);
     mpm_io_json_number(&j, "a", 1);
     equal("json: the error sticks", mpm_io_json_end(&j, &f), MPM_ERR_FILE);
+    holds("... and so does its reason", strcmp(f.field, "path: cannot be made") == 0);
+    equal("json without a path", mpm_io_json_begin(&j, "", &f), MPM_ERR_ARGUMENT);
+    equal("... sticks as such", mpm_io_json_end(&j, &f), MPM_ERR_ARGUMENT);
+    holds("... by name", strcmp(f.field, "length of path") == 0);
     equal("vtu nowhere", mpm_io_vtu(nowhere, &d, &f), MPM_ERR_FILE);
     equal("pvd nowhere", mpm_io_pvd_add(nowhere, "x.vtu", 0, &f), MPM_ERR_FILE);
     equal("png nowhere", mpm_io_png(nowhere, c, 1, 1, NULL, &f), MPM_ERR_FILE);
@@ -315,7 +320,8 @@ static void test_failures(void)
     mpm_io_csv_drop(&t); /* one that could not be begun */
     holds("dropped: nothing is left", !exists(nowhere));
     equal("a table without columns", mpm_io_csv_begin(&t, FOLDER "/none.csv", NULL, NULL, &f), MPM_ERR_ARGUMENT);
-    equal("... has no file", mpm_io_csv_end(&t, NULL), MPM_ERR_FILE);
+    equal("... ends as it began", mpm_io_csv_end(&t, &f), MPM_ERR_ARGUMENT);
+    holds("... for the same reason", strcmp(f.field, "columns") == 0 && !exists(FOLDER "/none.csv"));
 }
 
 /* ---- a world ------------------------------------------------------------------------------- */
@@ -456,6 +462,7 @@ static void test_json(void)
     mpm_io_json_close(&j);
     mpm_io_json_string(&j, "last", NULL);
     equal("json ends", mpm_io_json_end(&j, &f), MPM_OK);
+    equal("... once", mpm_io_json_end(&j, &f), MPM_ERR_FILE);
     holds("double comes back",
           json_value(path, "third") >= third && json_value(path, "third") <= third);
     holds("real comes back",
@@ -495,6 +502,7 @@ static void test_csv(void)
     mpm_io_csv_real(&t, (mpm_real)NAN);
     mpm_io_csv_text(&t, "plain");
     equal("csv ends", mpm_io_csv_end(&t, NULL), MPM_OK);
+    equal("... once", mpm_io_csv_end(&t, NULL), MPM_ERR_FILE);
     holds("csv text", file_is(path, "# mpm.h " MPM_VERSION ": why so\na,b\n0.1,-3\n"
                                          "7,\"a,\"\"b\"\"\"\nnan,plain\n"));
 }

@@ -190,7 +190,7 @@ MPM_API void mpm_io_drop(mpm_io_file *f);
 /* ---- JSON ---------------------------------------------------------------------------------- */
 
 /* One JSON object in a file. The calls between begin and end need no checking: an error sticks
-   and end returns it. Objects may be nested with open/close, at most eight deep. */
+   and end returns it. Objects may be nested with open/close. */
 typedef struct mpm_io_json {
     mpm_io_file file;
     int depth;         /* open objects */
@@ -770,7 +770,7 @@ MPM_API void mpm_io_json_open(mpm_io_json *j, const char *key)
     mpm__io_json_key(j, key);
     mpm_io_put(&j->file, "{");
     j->empty = 1;
-    if (++j->depth > 8) j->status = MPM_ERR_ARGUMENT;
+    j->depth++;
 }
 
 MPM_API void mpm_io_json_close(mpm_io_json *j)

@@ -447,6 +447,7 @@ static void test_json(void)
     mpm_io_json j;
     mpm_fault f;
     double third = 1.0 / 3;
+    int k;
     mpm_real real = (mpm_real)third;
     equal("json begins", mpm_io_json_begin(&j, path, &f), MPM_OK);
     mpm_io_json_number(&j, "third", third);
@@ -473,6 +474,10 @@ static void test_json(void)
                                       "  \"options\": {\n    \"speed\": 810\n  },\n"
                                       "  \"empty\": {},\n  \"last\": null\n}\n"));
     holds("version first", contains(path, "{\n  \"mpm_version\": \"" MPM_VERSION "\",\n"));
+    mpm_io_json_begin(&j, path, &f);
+    for (k = 0; k < 20; k++) mpm_io_json_open(&j, "deep");
+    while (k-- > 0) mpm_io_json_close(&j);
+    equal("twenty objects in each other", mpm_io_json_end(&j, &f), MPM_OK);
     mpm_io_json_begin(&j, FOLDER "/open.json", &f);
     mpm_io_json_open(&j, "left open");
     equal("an open object", mpm_io_json_end(&j, &f), MPM_ERR_ARGUMENT);

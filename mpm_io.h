@@ -317,8 +317,9 @@ MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const char *text, mp
                                           mpm_fault *fault);
 
 /* A world's description as such a text, into buffer[n], cut to fit: grid, sides, contact rules and bodies, one
-   "name value" a line; 1500 bytes and 800 for each body suffice. Materials are known to you alone: add lines of
-   theirs, and of the time step, behind the length that is returned. Test: 40_io "restart". */
+   "name value" a line; 1500 bytes, 300 for each rule of mpm_contact_set and 900 for each body suffice. Materials are
+   known to you alone: add lines of theirs, and of the time step, behind the length that is returned.
+   Test: 40_io "restart", "room". */
 MPM_API size_t mpm_io_world_text(char *buffer, size_t n, const mpm_world *world);
 
 /* Adds a line "name value" behind the `used` characters in buffer[n], cut to fit. Returns the new length.

@@ -835,6 +835,64 @@ static void test_restart(void)
     mpm_free(&second);
 }
 
+/* Puts the same number, or the longest word, wherever a contact rule has one. */
+static void lengthen_contact(mpm_contact *c, mpm_real longest)
+{
+    c->law = MPM_CONTACT_FRICTION;
+    c->normal = MPM_NORMAL_FIXED;
+    c->friction = c->cutoff = longest;
+    c->touch = -2147483647;
+}
+
+/* ... and a body. */
+static void lengthen_body(mpm_body_desc *b, mpm_real longest)
+{
+    int d;
+    for (d = 0; d < 3; d++) b->shape.center[d] = b->shape.half[d] = b->velocity[d] = longest;
+    b->spacing = b->density = b->temperature = b->wave_p = b->wave_s = longest;
+    b->absorb_normal = b->absorb_shear = b->shell = longest;
+    b->absorb = b->id = -2147483647;
+}
+
+/* How long a world's text can become: with the longest numbers in it, and rules for its pairs. */
+static void test_room(void)
+{
+    static char text[8000];
+    const mpm_real longest = sizeof(mpm_real) == 4 ? MPM_R(-1.17549435e-38) : (mpm_real)-2.2250738585072014e-308;
+    mpm_contact rule = mpm_desc_default().contact;
+    mpm_world w;
+    mpm_fault f;
+    size_t used[3];
+    int d, k;
+    equal("a world", make_world(&w), MPM_OK);
+    equal("a rule", mpm_contact_set(&w, 0, 1, &rule), MPM_OK);
+    equal("another", mpm_contact_set(&w, 0, -1, &rule), MPM_OK);
+    equal("saved with its rules", save(FOLDER "/rules.mpm", &w), MPM_OK);
+    equal("... and loaded", load(FOLDER "/rules.mpm", &w, &f), MPM_OK);
+    w.rule[1].contact.friction = MPM_R(0.25);
+    equal("with another rule", load(FOLDER "/rules.mpm", &w, &f), MPM_ERR_VERSION);
+    holds("... it is named", strncmp(f.field, "rule 1 contact.friction 0.25\n", 29) == 0);
+    lengthen_contact(&w.desc.contact, longest);
+    for (k = 0; k < 2; k++) lengthen_contact(&w.rule[k].contact, longest);
+    for (k = 0; k < 2; k++) lengthen_body(&w.body[k].desc, longest);
+    for (d = 0; d < 3; d++) w.desc.origin[d] = w.desc.gravity[d] = longest;
+    for (d = 0; d < 3; d++) w.desc.cells[d] = -2147483647;
+    for (d = 0; d < 6; d++) w.desc.side[d] = MPM_SIDE_SYMMETRY;
+    w.desc.geometry = MPM_AXISYMMETRIC;
+    w.desc.cell = w.desc.wall_friction = w.desc.mass_cutoff = longest;
+    used[2] = mpm_io_world_text(text, sizeof text, &w);
+    w.bodies = 0;
+    used[1] = mpm_io_world_text(text, sizeof text, &w);
+    w.rules = 0;
+    used[0] = mpm_io_world_text(text, sizeof text, &w);
+    w.bodies = w.rules = 2;
+    holds("the longest head fits", used[0] > 450 && used[0] < 1500);
+    holds("... rules", used[1] - used[0] > 2 * 150 && used[1] - used[0] < 2 * (300 - 6 * 9));
+    holds("... and bodies, of numbers of ten digits too", used[2] - used[1] < 2 * (900 - 15 * 9));
+    printf("# %d, %d a rule, %d a body\n", (int)used[0], (int)(used[1] - used[0]) / 2, (int)(used[2] - used[1]) / 2);
+    mpm_free(&w);
+}
+
 /* Numbers that would lead out of the memory, in files whose checksums are right: case k, and the field that the
    fault must name. */
 static const char *const crafted[] = {"points",         "points",  "points",         "points of body",
@@ -972,6 +1030,7 @@ int main(void)
     test_checkpoint();
     test_text();
     test_restart();
+    test_room();
     test_crafted();
     test_png();
     return check_end();

@@ -89,7 +89,6 @@
 #define mpm_io_drop mpm_io_drop_f32
 #define mpm_io_json_begin mpm_io_json_begin_f32
 #define mpm_io_json_number mpm_io_json_number_f32
-#define mpm_io_json_real mpm_io_json_real_f32
 #define mpm_io_json_integer mpm_io_json_integer_f32
 #define mpm_io_json_bool mpm_io_json_bool_f32
 #define mpm_io_json_string mpm_io_json_string_f32
@@ -201,10 +200,9 @@ typedef struct mpm_io_json {
 /* Starts an object whose first key is "mpm_version". Returns MPM_ERR_FILE when the file cannot be
    made, MPM_ERR_ARGUMENT for a bad path. Test: 40_io "json". */
 MPM_API mpm_status mpm_io_json_begin(mpm_io_json *j, const char *path, mpm_fault *fault);
-/* key: value. A number that is not finite becomes null; `real` prints the digits an mpm_real needs,
-   `number` those of a double. Test: 40_io "json". */
+/* key: value. A number that is not finite becomes null; others get the digits that a double needs.
+   Test: 40_io "json". */
 MPM_API void mpm_io_json_number(mpm_io_json *j, const char *key, double value);
-MPM_API void mpm_io_json_real(mpm_io_json *j, const char *key, mpm_real value);
 MPM_API void mpm_io_json_integer(mpm_io_json *j, const char *key, long long value);
 MPM_API void mpm_io_json_bool(mpm_io_json *j, const char *key, int value);
 MPM_API void mpm_io_json_string(mpm_io_json *j, const char *key, const char *value);
@@ -330,8 +328,8 @@ MPM_API size_t mpm_io_line_number(char *buffer, size_t n, size_t used, const cha
 /* ---- PNG ----------------------------------------------------------------------------------- */
 
 /* Writes pixels as PNG: 3 width height bytes, red green blue, row by row from the top; `note` (or NULL) is
-   kept in it as its description (iTXt, UTF-8). MPM_ERR_ARGUMENT for sizes out of range (1 .. 16384 each), MPM_ERR_FILE,
-   MPM_ERR_MEMORY. Test: 40_io "png". */
+   kept in it as its description (iTXt, UTF-8). MPM_ERR_ARGUMENT without pixels and for sizes out of range
+   (1 .. 16384 each), MPM_ERR_FILE, MPM_ERR_MEMORY. Test: 40_io "png". */
 MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int width, int height,
                               const char *note, mpm_fault *fault);
 
@@ -738,13 +736,6 @@ MPM_API void mpm_io_json_number(mpm_io_json *j, const char *key, double value)
     mpm__io_json_key(j, key);
     if (value - value != 0) mpm_io_put(&j->file, "null");
     else mpm_io_put_number(&j->file, value);
-}
-
-MPM_API void mpm_io_json_real(mpm_io_json *j, const char *key, mpm_real value)
-{
-    mpm__io_json_key(j, key);
-    if (value - value != 0) mpm_io_put(&j->file, "null");
-    else mpm_io_put_real(&j->file, value);
 }
 
 MPM_API void mpm_io_json_integer(mpm_io_json *j, const char *key, long long value)
@@ -2014,7 +2005,8 @@ MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int
     mpm_io_file f;
     mpm__io_zip *z;
     mpm_status status;
-    if (!pixels || width < 1 || width > 16384)
+    if (!pixels) return mpm_fail(fault, MPM_ERR_ARGUMENT, "pixels (none)", 0, -1);
+    if (width < 1 || width > 16384)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "width of picture", (mpm_real)width, -1);
     if (height < 1 || height > 16384)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "height of picture", (mpm_real)height, -1);

@@ -97,7 +97,8 @@ typedef struct mpm_draw_canvas {
     unsigned char *rgb;  /* 3 width height bytes, row by row from the top */
     unsigned char *mask; /* width height bytes: coverage of the shape being drawn */
     int box[4];          /* the part of the mask in use: left, top, right, bottom */
-    int clip[4];         /* where drawing is allowed */
+    int clip[4];         /* where drawing is allowed, within the picture: left, top, right, bottom; all of it after
+                            init; change at will, figures keep to it */
     void *memory;        /* to be freed, or NULL when it is the caller's */
 } mpm_draw_canvas;
 
@@ -361,8 +362,6 @@ MPM_API size_t mpm_draw_canvas_bytes(int width, int height)
     return (size_t)width * (size_t)height * 4;
 }
 
-static inline void mpm__draw_clip(mpm_draw_canvas *c, double left, double top, double right, double bottom);
-
 MPM_API mpm_status mpm_draw_canvas_init(mpm_draw_canvas *c, int width, int height, void *memory, size_t bytes)
 {
     size_t need = mpm_draw_canvas_bytes(width, height), pixels = need / 4;
@@ -371,14 +370,13 @@ MPM_API mpm_status mpm_draw_canvas_init(mpm_draw_canvas *c, int width, int heigh
     if (memory && bytes < need) return MPM_ERR_MEMORY;
     if (!memory) c->memory = memory = MPM_MALLOC(need);
     if (!memory) return MPM_ERR_MEMORY;
-    c->width = width;
-    c->height = height;
+    c->width = c->box[0] = c->clip[2] = width;
+    c->height = c->box[1] = c->clip[3] = height;
     c->unit = 1;
     c->rgb = (unsigned char *)memory;
     c->mask = c->rgb + 3 * pixels;
     memset(c->rgb, 255, 3 * pixels);
     memset(c->mask, 0, pixels);
-    mpm__draw_clip(c, 0, 0, width, height);
     return MPM_OK;
 }
 
@@ -394,20 +392,6 @@ static inline int mpm__draw_whole(double value, int low, int high)
     if (!(value > low)) return low;
     return value < high ? (int)(value + 0.5) : high;
 }
-
-/* Limits drawing to a part of the canvas, and forgets the box in use. */
-static inline void mpm__draw_clip(mpm_draw_canvas *c, double left, double top, double right, double bottom)
-{
-    c->clip[0] = mpm__draw_whole(left, 0, c->width);
-    c->clip[1] = mpm__draw_whole(top, 0, c->height);
-    c->clip[2] = mpm__draw_whole(right, 0, c->width);
-    c->clip[3] = mpm__draw_whole(bottom, 0, c->height);
-    c->box[0] = c->width;
-    c->box[1] = c->height;
-    c->box[2] = c->box[3] = 0;
-}
-
-static inline void mpm__draw_clip_none(mpm_draw_canvas *c) { mpm__draw_clip(c, 0, 0, c->width, c->height); }
 
 static inline void mpm__draw_set(unsigned char *p, mpm_draw_color color)
 {
@@ -891,6 +875,22 @@ static inline void mpm__draw_hair(mpm_draw_canvas *c, double ax, double ay, doub
     double w = floor(c->unit + 0.5) < 1 ? 1 : floor(c->unit + 0.5);
     if (ax < bx) mpm_draw_rectangle(c, ax, by - 0.5 * w, bx - ax, w, color);
     else mpm_draw_rectangle(c, ax - 0.5 * w, ay < by ? ay : by, w, fabs(by - ay), color);
+}
+
+/* Limits drawing to the frame, as far as the clip lets it; that goes to `before`, to be put back. */
+static inline void mpm__draw_clip(mpm_draw_canvas *c, const mpm__draw_axes *a, int before[4])
+{
+    int frame[4], k;
+    frame[0] = mpm__draw_whole(a->left, 0, c->width);
+    frame[1] = mpm__draw_whole(a->top, 0, c->height);
+    frame[2] = mpm__draw_whole(a->right, 0, c->width);
+    frame[3] = mpm__draw_whole(a->bottom, 0, c->height);
+    memcpy(before, c->clip, sizeof c->clip);
+    for (k = 0; k < 2; k++) {
+        if (frame[k] > c->clip[k]) c->clip[k] = frame[k];
+        if (frame[k + 2] < c->clip[k + 2]) c->clip[k + 2] = frame[k + 2];
+        if (c->clip[k + 2] < c->clip[k]) c->clip[k + 2] = c->clip[k]; /* nothing of it can be seen */
+    }
 }
 
 static inline void mpm__draw_frame(mpm_draw_canvas *c, const mpm__draw_axes *a)
@@ -1640,6 +1640,7 @@ MPM_API mpm_status mpm_draw_scatter(mpm_draw_canvas *c, mpm_draw_rect where, con
     mpm_draw_rect bar;
     double scale;
     size_t i, n;
+    int before[4];
     if (d->mark != MPM_MARK)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_draw_scatter_desc_default)",
                         (mpm_real)d->mark, -1);
@@ -1662,7 +1663,7 @@ MPM_API mpm_status mpm_draw_scatter(mpm_draw_canvas *c, mpm_draw_rect where, con
     s = mpm__draw_value_span(dots, n, &a, d->low, d->high);
     scale = (a.right - a.left) / (a.high[0] - a.low[0]);
     mpm__draw_grid(c, &a);
-    mpm__draw_clip(c, a.left, a.top, a.right, a.bottom);
+    mpm__draw_clip(c, &a, before);
     for (i = 0; i < n; i++) {
         double radius = d->size ? 0.5 * dots[i].size * scale : 0.5 * d->dot * c->unit;
         mpm_draw_color color = d->value ? mpm_draw_map_color(d->map, (dots[i].value - s.low) / (s.high - s.low))
@@ -1670,7 +1671,7 @@ MPM_API mpm_status mpm_draw_scatter(mpm_draw_canvas *c, mpm_draw_rect where, con
         mpm_draw_disc(c, mpm__draw_at_x(&a, dots[i].x), mpm__draw_at_y(&a, dots[i].y), radius, color);
     }
     MPM_FREE(dots);
-    mpm__draw_clip_none(c);
+    memcpy(c->clip, before, sizeof c->clip);
     mpm__draw_frame(c, &a);
     mpm__draw_heading(c, &a, &f);
     mpm__draw_numbers(c, &a, d->x_label, d->y_label);
@@ -1828,7 +1829,7 @@ MPM_API mpm_status mpm_draw_plot(mpm_draw_canvas *c, mpm_draw_rect where, const 
 {
     mpm__draw_furniture f = {NULL, NULL, NULL, NULL, 1, 0, 0};
     mpm__draw_axes a;
-    int k;
+    int before[4], k;
     if (d->mark != MPM_MARK)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_draw_plot_desc_default)", (mpm_real)d->mark, -1);
     if (!mpm__draw_plot_range(d, 0, &a) || !mpm__draw_plot_range(d, 1, &a))
@@ -1839,9 +1840,9 @@ MPM_API mpm_status mpm_draw_plot(mpm_draw_canvas *c, mpm_draw_rect where, const 
     f.y_label = d->y_label;
     if (!mpm__draw_place(c, where, &f, &a)) return mpm__draw_no_place(where, fault);
     mpm__draw_grid(c, &a);
-    mpm__draw_clip(c, a.left, a.top, a.right, a.bottom);
+    mpm__draw_clip(c, &a, before);
     for (k = 0; k < d->curve_count; k++) mpm__draw_one_curve(c, &a, &d->curves[k]);
-    mpm__draw_clip_none(c);
+    memcpy(c->clip, before, sizeof c->clip);
     mpm__draw_frame(c, &a);
     mpm__draw_heading(c, &a, &f);
     mpm__draw_numbers(c, &a, d->x_label, d->y_label);

@@ -426,6 +426,45 @@ static void test_plots(void)
     mpm_draw_canvas_free(&c);
 }
 
+/* Figures draw where the caller lets them, and leave that as it was. */
+static void test_clip(void)
+{
+    static const int box[4] = {90, 40, 150, 120};
+    static const mpm_real x[3] = {0, 1, 2}, y[3] = {0, 2, 1};
+    mpm_draw_scatter_desc s = mpm_draw_scatter_desc_default();
+    mpm_draw_plot_desc p = mpm_draw_plot_desc_default();
+    mpm_draw_cut_desc cut = make_cut();
+    mpm_draw_curve curve;
+    mpm_draw_canvas c;
+    mpm_fault f;
+    int k;
+    memset(&curve, 0, sizeof curve);
+    curve.count = s.count = 3;
+    curve.x = s.x = x;
+    curve.y = s.y = y;
+    p.curves = &curve;
+    p.curve_count = 1;
+    s.dot = 200;
+    for (k = 0; k < 3; k++) {
+        mpm_draw_rect all;
+        mpm_draw_canvas_init(&c, 200, 160, NULL, 0);
+        all = mpm_draw_tile(&c, 1, 1, 0);
+        memcpy(c.clip, box, sizeof box);
+        if (k == 0) equal("a plot within a clip", mpm_draw_plot(&c, all, &p, &f), MPM_OK);
+        if (k == 1) equal("a scatter plot within a clip", mpm_draw_scatter(&c, all, &s, &f), MPM_OK);
+        if (k == 2) equal("a cut within a clip", mpm_draw_cut(&c, all, &cut, &f), MPM_OK);
+        holds("... draws there", darkness(&c, 90, 40, 150, 120) > 0);
+        equal("... and nowhere else", darkness(&c, 0, 0, 200, 160) - darkness(&c, 90, 40, 150, 120), 0);
+        holds("... and leaves it as it was", memcmp(c.clip, box, sizeof box) == 0);
+        mpm_draw_canvas_free(&c);
+    }
+    mpm_draw_canvas_init(&c, 200, 160, NULL, 0);
+    c.clip[2] = c.clip[3] = 3; /* left of and above any frame */
+    equal("a clip beside the frame", mpm_draw_scatter(&c, mpm_draw_tile(&c, 1, 1, 0), &s, &f), MPM_OK);
+    equal("... lets nothing through", darkness(&c, 0, 0, 200, 160), 0);
+    mpm_draw_canvas_free(&c);
+}
+
 /* Sizes that no picture has: a status, or nothing drawn. */
 static void test_odd_sizes(void)
 {
@@ -487,5 +526,6 @@ int main(void)
     test_odd_sizes();
     test_color_bar();
     test_plots();
+    test_clip();
     return check_end();
 }

@@ -33,8 +33,8 @@
        }
 
    CONTENTS
-     canvas        mpm_draw_canvas_bytes, _canvas_init, _canvas_free
-     primitives    mpm_draw_fill, _pixel, _rectangle, _line, _disc, _text, _text_width
+     canvas        mpm_draw_canvas_bytes, _canvas_init, _canvas_free, _pixel
+     primitives    mpm_draw_fill, _rectangle, _line, _disc, _text, _text_width
      colours       mpm_draw_map_color, _series_color
      numbers       mpm_draw_number, _nice, _ticks
      figures       mpm_draw_tile, _color_bar, _cut, _cuts, _scatter, _plot
@@ -108,12 +108,16 @@ MPM_API size_t mpm_draw_canvas_bytes(int width, int height);
 /* A white canvas in the caller's memory, or in allocated memory when `memory` is NULL.
    MPM_ERR_ARGUMENT, MPM_ERR_MEMORY. Test: 41_draw "canvas". */
 MPM_API mpm_status mpm_draw_canvas_init(mpm_draw_canvas *c, int width, int height, void *memory, size_t bytes);
+/* Gives back what init allocated, if it did: the canvas then has no pixels. Harmless once more.
+   Test: 41_draw "canvas". */
 MPM_API void mpm_draw_canvas_free(mpm_draw_canvas *c);
+
+/* The colour of the pixel in column x, row y; 0, black, outside the picture. Test: 41_draw "canvas". */
+MPM_API mpm_draw_color mpm_draw_pixel(const mpm_draw_canvas *c, int x, int y);
 
 /* Primitives. Coordinates in pixels; whatever lies outside is cut off. Rectangles have sharp edges
    at the nearest pixel, everything else is smoothed. Test: 41_draw "drawing". */
 MPM_API void mpm_draw_fill(mpm_draw_canvas *c, mpm_draw_color color);
-MPM_API mpm_draw_color mpm_draw_pixel(const mpm_draw_canvas *c, int x, int y);
 MPM_API void mpm_draw_rectangle(mpm_draw_canvas *c, double x, double y, double width, double height,
                                 mpm_draw_color color);
 MPM_API void mpm_draw_line(mpm_draw_canvas *c, double ax, double ay, double bx, double by, double width,
@@ -235,7 +239,8 @@ typedef struct mpm_draw_scatter_desc {
 
 /* dot 5, equal 1, scale 1. Test: 41_draw "scatter and plot". */
 MPM_API mpm_draw_scatter_desc mpm_draw_scatter_desc_default(void);
-/* Errors as for the cut. Test: 41_draw "scatter and plot". */
+/* MPM_ERR_ARGUMENT (the fault names the field) when something needed is missing or no point has a finite place;
+   MPM_ERR_MEMORY. Test: 41_draw "scatter and plot". */
 MPM_API mpm_status mpm_draw_scatter(mpm_draw_canvas *c, mpm_draw_rect where, const mpm_draw_scatter_desc *d,
                                     mpm_fault *fault);
 
@@ -800,7 +805,7 @@ static inline void mpm__draw_tick_differs(mpm_draw_tick *ticks, int n)
 static inline int mpm__draw_log_ticks(double low, double high, mpm_draw_tick *ticks)
 {
     int n = 0, decade, digit, skip;
-    if (!(low > -400 && high >= low && high < 400)) return 0; /* beyond all numbers there are */
+    if (low < -400 || high > 400) return 0; /* beyond all numbers there are */
     skip = 1 + (int)((high - low) / 8);
     for (decade = (int)floor(low); decade <= (int)ceil(high); decade++)
         for (digit = 1; digit < 10 && n < MPM_DRAW_TICKS; digit++) {
@@ -823,7 +828,7 @@ MPM_API int mpm_draw_ticks(double low, double high, int is_log, int want, mpm_dr
     double largest = fabs(low) > fabs(high) ? fabs(low) : fabs(high);
     int n = 0;
     if (!(low < high && high - low < 1e300)) return 0; /* NaN too */
-    if (is_log) return low > -400 && high < 400 ? mpm__draw_log_ticks(low, high, ticks) : 0;
+    if (is_log) return mpm__draw_log_ticks(low, high, ticks);
     if (!(step > 0)) return 0; /* the range is smaller than any number's last digit */
     if (step * (want > 2 ? want : 2) < 0.999 * (high - low)) step = mpm_draw_nice(2.51 * step);
     for (k = ceil(low / step - 1e-6); k * step <= high + 1e-6 * step && n < MPM_DRAW_TICKS; k++) {
@@ -933,9 +938,28 @@ static inline void mpm__draw_grid(mpm_draw_canvas *c, const mpm__draw_axes *a)
     }
 }
 
-/* Ticks, their numbers and the labels of both axes. */
-static inline void mpm__draw_numbers(mpm_draw_canvas *c, const mpm__draw_axes *a, const char *x_label,
-                                     const char *y_label)
+/* What a figure has around its frame. */
+typedef struct mpm__draw_furniture {
+    const char *title, *note, *x_label, *y_label;
+    const char *bar;      /* label of the colour bar; NULL: none */
+    int numbers, equal;
+    double length_scale;  /* of the numbers along linear axes: printed over drawn */
+} mpm__draw_furniture;
+
+/* The axes as their numbers are printed. */
+static inline mpm__draw_axes mpm__draw_printed(const mpm__draw_axes *a, const mpm__draw_furniture *f)
+{
+    mpm__draw_axes printed = *a;
+    int k;
+    for (k = 0; k < 2; k++) {
+        printed.low[k] *= f->length_scale;
+        printed.high[k] *= f->length_scale;
+    }
+    return printed;
+}
+
+/* Ticks, their numbers and the labels of both axes, as printed. */
+static inline void mpm__draw_numbers(mpm_draw_canvas *c, const mpm__draw_axes *a, const mpm__draw_furniture *f)
 {
     mpm_draw_tick ticks[MPM_DRAW_TICKS];
     double u = c->unit, size = MPM__DRAW_NUMBER * u, widest = 0;
@@ -953,29 +977,24 @@ static inline void mpm__draw_numbers(mpm_draw_canvas *c, const mpm__draw_axes *a
         mpm__draw_tick_text(c, a->left - 9 * u, y + 0.5 * size, size, MPM_DRAW_RIGHT, ticks[i].text);
         if (width > widest) widest = width;
     }
-    if (x_label)
+    if (f->x_label)
         mpm__draw_write_fit(c, 0.5 * (a->left + a->right), a->bottom + (9 + 12) * u + size + MPM__DRAW_LABEL * u,
-                            MPM__DRAW_LABEL * u, MPM_DRAW_CENTER, 1.15, MPM__DRAW_INK, x_label, a->right - a->left);
-    if (y_label)
+                            MPM__DRAW_LABEL * u, MPM_DRAW_CENTER, 1.15, MPM__DRAW_INK, f->x_label, a->right - a->left);
+    if (f->y_label)
         mpm__draw_write(c, a->left - (9 + 10) * u - widest, 0.5 * (a->top + a->bottom), MPM__DRAW_LABEL * u,
-                        MPM_DRAW_CENTER, 1, 1.15, MPM__DRAW_INK, y_label);
+                        MPM_DRAW_CENTER, 1, 1.15, MPM__DRAW_INK, f->y_label);
 }
-
-/* What a figure has around its frame. */
-typedef struct mpm__draw_furniture {
-    const char *title, *note, *x_label, *y_label;
-    int numbers, bar, equal;
-} mpm__draw_furniture;
 
 /* Room beside the frame for the numbers and label of the y axis [pixels]. */
 static inline double mpm__draw_left_room(const mpm_draw_canvas *c, const mpm__draw_axes *a,
                                          const mpm__draw_furniture *f)
 {
+    const mpm__draw_axes printed = mpm__draw_printed(a, f);
     mpm_draw_tick ticks[MPM_DRAW_TICKS];
     double widest = 0;
     int i, n;
     if (!f->numbers) return 0;
-    n = mpm__draw_ticks_y(c, a, ticks);
+    n = mpm__draw_ticks_y(c, &printed, ticks);
     for (i = 0; i < n; i++) {
         double width = mpm__draw_tick_width(MPM__DRAW_NUMBER * c->unit, ticks[i].text);
         if (width > widest) widest = width;
@@ -1054,40 +1073,57 @@ static inline void mpm__draw_heading(mpm_draw_canvas *c, const mpm__draw_axes *a
 
 /* ---- colour bar ---------------------------------------------------------------------------- */
 
-/* A bar with pointed ends where values lie below low or above high. */
-static inline void mpm__draw_bar(mpm_draw_canvas *c, mpm_draw_rect where, mpm_draw_map map, double low, double high,
-                                 int below, int above, const char *label)
+/* A range of values, and whether there are some below or above it. */
+typedef struct mpm__draw_span {
+    double low, high;
+    int below, above;
+} mpm__draw_span;
+
+/* A bar from x1 to x2 below y, with pointed ends where values lie outside the range. */
+static inline void mpm__draw_bar(mpm_draw_canvas *c, double x1, double x2, double y, mpm_draw_map map,
+                                 const mpm__draw_span *s, const char *label)
 {
     mpm_draw_tick ticks[MPM_DRAW_TICKS];
     double u = c->unit, size = MPM__DRAW_NUMBER * u, thick = floor(10 * u + 0.5), x, tip = 0.8 * thick;
-    double left = floor(where.x) + (below ? tip : 0);
-    double right = floor(where.x + where.width) - (above ? tip : 0);
-    int i, n = mpm_draw_ticks(low, high, 0, mpm__draw_steps((right - left) / (54 * u)), ticks);
+    double left = floor(x1) + (s->below ? tip : 0), right = floor(x2) - (s->above ? tip : 0);
+    int i, n = mpm_draw_ticks(s->low, s->high, 0, mpm__draw_steps((right - left) / (54 * u)), ticks);
     if (!(right > left)) return;
     for (x = left; x < right; x++)
-        mpm_draw_rectangle(c, x, where.y, 1, thick, mpm_draw_map_color(map, (x + 0.5 - left) / (right - left)));
+        mpm_draw_rectangle(c, x, y, 1, thick, mpm_draw_map_color(map, (x + 0.5 - left) / (right - left)));
     for (x = 0; x < tip; x++) {
         double half = 0.5 * thick * (1 - x / tip);
-        if (below)
-            mpm_draw_rectangle(c, left - x - 1, where.y + 0.5 * thick - half, 1, 2 * half, mpm_draw_map_color(map, 0));
-        if (above)
-            mpm_draw_rectangle(c, right + x, where.y + 0.5 * thick - half, 1, 2 * half, mpm_draw_map_color(map, 1));
+        if (s->below)
+            mpm_draw_rectangle(c, left - x - 1, y + 0.5 * thick - half, 1, 2 * half, mpm_draw_map_color(map, 0));
+        if (s->above)
+            mpm_draw_rectangle(c, right + x, y + 0.5 * thick - half, 1, 2 * half, mpm_draw_map_color(map, 1));
     }
     for (i = 0; i < n; i++) {
-        x = left + (right - left) * (ticks[i].at - low) / (high - low);
+        x = left + (right - left) * (ticks[i].at - s->low) / (s->high - s->low);
         x = x < left + 0.5 ? left + 0.5 : x > right - 0.5 ? right - 0.5 : x;
-        mpm__draw_hair(c, x, where.y + thick, x, where.y + thick + 4 * u, MPM__DRAW_FRAME);
-        mpm__draw_tick_text(c, x, where.y + thick + 8 * u + size, size, MPM_DRAW_CENTER, ticks[i].text);
+        mpm__draw_hair(c, x, y + thick, x, y + thick + 4 * u, MPM__DRAW_FRAME);
+        mpm__draw_tick_text(c, x, y + thick + 8 * u + size, size, MPM_DRAW_CENTER, ticks[i].text);
     }
     if (label)
-        mpm__draw_write_fit(c, 0.5 * (left + right), where.y + thick + (8 + 10 + MPM__DRAW_LABEL) * u + size,
+        mpm__draw_write_fit(c, 0.5 * (left + right), y + thick + (8 + 10 + MPM__DRAW_LABEL) * u + size,
                             MPM__DRAW_LABEL * u, MPM_DRAW_CENTER, 1.15, MPM__DRAW_INK, label, right - left);
+}
+
+/* The bar of a figure, below its frame. */
+static inline void mpm__draw_bar_below(mpm_draw_canvas *c, const mpm__draw_axes *a, const mpm__draw_furniture *f,
+                                       mpm_draw_map map, const mpm__draw_span *s)
+{
+    const double y = a->bottom + (mpm__draw_bottom_room(f) - MPM__DRAW_BAR + 16) * c->unit;
+    if (f->bar) mpm__draw_bar(c, a->left, a->right, y, map, s, f->bar);
 }
 
 MPM_API void mpm_draw_color_bar(mpm_draw_canvas *c, mpm_draw_rect where, mpm_draw_map map, double low, double high,
                                 const char *label)
 {
-    if (high > low && mpm__draw_has_room(c, where)) mpm__draw_bar(c, where, map, low, high, 0, 0, label);
+    mpm__draw_span s = {0, 0, 0, 0};
+    s.low = low;
+    s.high = high;
+    if (high > low && mpm__draw_has_room(c, where))
+        mpm__draw_bar(c, where.x, where.x + where.width, where.y, map, &s, label);
 }
 
 MPM_API mpm_draw_rect mpm_draw_tile(const mpm_draw_canvas *c, int columns, int rows, int number)
@@ -1107,12 +1143,6 @@ typedef struct mpm__draw_dot {
     double x, y, value, size;
     int32_t body;
 } mpm__draw_dot;
-
-/* A range being found, and what falls outside a given one. */
-typedef struct mpm__draw_span {
-    double low, high;
-    int below, above;
-} mpm__draw_span;
 
 /* The colour range: as given, or that of the dots within the frame. A constant field gets a
    range around it. */
@@ -1499,11 +1529,12 @@ static inline void mpm__draw_scale_bar(mpm_draw_canvas *c, const mpm__draw_axes 
 /* What surrounds a cut. */
 static inline mpm__draw_furniture mpm__draw_cut_furniture(const mpm_draw_cut_desc *d)
 {
-    mpm__draw_furniture f = {NULL, NULL, NULL, NULL, 0, 0, 1};
+    mpm__draw_furniture f = {NULL, NULL, NULL, NULL, NULL, 0, 1, 1};
     f.title = d->title;
     f.note = d->time;
     f.numbers = d->ticks;
-    f.bar = d->label && d->value;
+    f.bar = d->value ? d->label : NULL;
+    f.length_scale = d->length_scale;
     return f;
 }
 
@@ -1528,9 +1559,8 @@ static inline mpm__draw_dot *mpm__draw_cut_gather(const mpm_draw_cut_desc *d, si
 MPM_API mpm_status mpm_draw_cut(mpm_draw_canvas *c, mpm_draw_rect where, const mpm_draw_cut_desc *d, mpm_fault *fault)
 {
     mpm__draw_furniture f = mpm__draw_cut_furniture(d);
-    mpm__draw_axes a;
+    mpm__draw_axes a, printed;
     mpm__draw_span s;
-    mpm_draw_rect bar;
     mpm_status status;
     size_t n;
     mpm__draw_dot *dots = mpm__draw_cut_gather(d, &n, &status, fault);
@@ -1546,33 +1576,28 @@ MPM_API mpm_status mpm_draw_cut(mpm_draw_canvas *c, mpm_draw_rect where, const m
     if (status < 0) return mpm_fail(fault, status, "layers of the cut", 0, -1);
     mpm__draw_frame(c, &a);
     mpm__draw_heading(c, &a, &f);
-    if (f.numbers) {
-        mpm__draw_axes printed = a;
-        printed.low[0] *= d->length_scale;
-        printed.high[0] *= d->length_scale;
-        printed.low[1] *= d->length_scale;
-        printed.high[1] *= d->length_scale;
-        mpm__draw_numbers(c, &printed, NULL, NULL);
-    } else if (d->length_unit) mpm__draw_scale_bar(c, &a, d->length_scale, d->length_unit);
-    bar.x = a.left;
-    bar.width = a.right - a.left;
-    bar.y = a.bottom + (mpm__draw_bottom_room(&f) - MPM__DRAW_BAR + 16) * c->unit;
-    bar.height = MPM__DRAW_BAR * c->unit;
-    if (f.bar) mpm__draw_bar(c, bar, d->map, s.low, s.high, s.below, s.above, d->label);
+    printed = mpm__draw_printed(&a, &f);
+    if (f.numbers) mpm__draw_numbers(c, &printed, &f);
+    else if (d->length_unit) mpm__draw_scale_bar(c, &a, d->length_scale, d->length_unit);
+    mpm__draw_bar_below(c, &a, &f, d->map, &s);
     return MPM_OK;
 }
 
-/* The height of a panel of a given width: its window's sides, and the rest. */
+/* The height of a panel of a given width: its window's sides, and the rest. The points are looked at only where
+   the window is theirs. */
 static inline mpm_status mpm__draw_cut_height(const mpm_draw_cut_desc *d, int width, double *height, mpm_fault *fault)
 {
     mpm__draw_furniture f = mpm__draw_cut_furniture(d);
     mpm__draw_axes a;
+    const int given = d->window[1] > d->window[0] && d->window[3] > d->window[2];
+    mpm__draw_dot *dots = NULL;
     mpm_status status;
-    size_t n;
-    mpm__draw_dot *dots = mpm__draw_cut_gather(d, &n, &status, fault);
-    if (!dots) return status;
+    size_t n = 0;
+    if (given) status = mpm__draw_cut_check(d, fault);
+    else dots = mpm__draw_cut_gather(d, &n, &status, fault);
+    if (status < 0) return status;
     mpm__draw_fit(&a, d->window, dots, n, 0.02);
-    MPM_FREE(dots);
+    if (dots) MPM_FREE(dots);
     *height = (width - 2 * MPM__DRAW_PAD) * (a.high[1] - a.low[1]) / (a.high[0] - a.low[0]) + 2 * MPM__DRAW_PAD +
               mpm__draw_top_room(&f) + mpm__draw_bottom_room(&f);
     return MPM_OK;
@@ -1633,11 +1658,10 @@ static inline size_t mpm__draw_scatter_dots(const mpm_draw_scatter_desc *d, mpm_
 MPM_API mpm_status mpm_draw_scatter(mpm_draw_canvas *c, mpm_draw_rect where, const mpm_draw_scatter_desc *d,
                                     mpm_fault *fault)
 {
-    mpm__draw_furniture f = {NULL, NULL, NULL, NULL, 1, 0, 0};
+    mpm__draw_furniture f = {NULL, NULL, NULL, NULL, NULL, 1, 0, 1};
     mpm__draw_axes a;
     mpm__draw_span s;
     mpm__draw_dot *dots;
-    mpm_draw_rect bar;
     double scale;
     size_t i, n;
     int before[4];
@@ -1649,11 +1673,15 @@ MPM_API mpm_status mpm_draw_scatter(mpm_draw_canvas *c, mpm_draw_rect where, con
     dots = (mpm__draw_dot *)MPM_MALLOC(d->count * sizeof *dots);
     if (!dots) return mpm_fail(fault, MPM_ERR_MEMORY, "dots of the scatter plot", (mpm_real)d->count, -1);
     n = mpm__draw_scatter_dots(d, dots);
+    if (n == 0) {
+        MPM_FREE(dots);
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "points of the scatter plot that are finite", 0, -1);
+    }
     f.title = d->title;
     f.note = d->note;
     f.x_label = d->x_label;
     f.y_label = d->y_label;
-    f.bar = d->label && d->value;
+    f.bar = d->value ? d->label : NULL;
     f.equal = d->equal;
     mpm__draw_fit(&a, d->window, dots, n, 0.05);
     if (!mpm__draw_place(c, where, &f, &a)) {
@@ -1674,12 +1702,8 @@ MPM_API mpm_status mpm_draw_scatter(mpm_draw_canvas *c, mpm_draw_rect where, con
     memcpy(c->clip, before, sizeof c->clip);
     mpm__draw_frame(c, &a);
     mpm__draw_heading(c, &a, &f);
-    mpm__draw_numbers(c, &a, d->x_label, d->y_label);
-    bar.x = a.left;
-    bar.width = a.right - a.left;
-    bar.y = a.bottom + (mpm__draw_bottom_room(&f) - MPM__DRAW_BAR + 16) * c->unit;
-    bar.height = MPM__DRAW_BAR * c->unit;
-    if (f.bar) mpm__draw_bar(c, bar, d->map, s.low, s.high, s.below, s.above, d->label);
+    mpm__draw_numbers(c, &a, &f);
+    mpm__draw_bar_below(c, &a, &f, d->map, &s);
     return MPM_OK;
 }
 
@@ -1827,7 +1851,7 @@ static inline void mpm__draw_legend(mpm_draw_canvas *c, const mpm__draw_axes *a,
 
 MPM_API mpm_status mpm_draw_plot(mpm_draw_canvas *c, mpm_draw_rect where, const mpm_draw_plot_desc *d, mpm_fault *fault)
 {
-    mpm__draw_furniture f = {NULL, NULL, NULL, NULL, 1, 0, 0};
+    mpm__draw_furniture f = {NULL, NULL, NULL, NULL, NULL, 1, 0, 1};
     mpm__draw_axes a;
     int before[4], k;
     if (d->mark != MPM_MARK)
@@ -1845,7 +1869,7 @@ MPM_API mpm_status mpm_draw_plot(mpm_draw_canvas *c, mpm_draw_rect where, const 
     memcpy(c->clip, before, sizeof c->clip);
     mpm__draw_frame(c, &a);
     mpm__draw_heading(c, &a, &f);
-    mpm__draw_numbers(c, &a, d->x_label, d->y_label);
+    mpm__draw_numbers(c, &a, &f);
     mpm__draw_legend(c, &a, d);
     return MPM_OK;
 }

@@ -41,6 +41,9 @@ static void test_canvas(void)
     mpm_draw_line(&c, 1, 1, 19, 9, 1.5, 0xff0000);
     equal("written", mpm_io_png(FOLDER "/line.png", c.rgb, c.width, c.height, "a note", &f), MPM_OK);
     holds("... and back", png_matches(FOLDER "/line.png", &c));
+    equal("a pixel outside", mpm_draw_pixel(&c, 20, 0), 0);
+    mpm_draw_canvas_free(&c);
+    equal("freed: no pixels", mpm_draw_pixel(&c, 0, 0), 0);
     mpm_draw_canvas_free(&c);
 }
 
@@ -224,6 +227,12 @@ static void test_cut(void)
     equal("... into a file", mpm_io_png(FOLDER "/cut.png", c.rgb, c.width, c.height, "two bodies", &f), MPM_OK);
     holds("... and back", png_matches(FOLDER "/cut.png", &c));
     mpm_draw_canvas_free(&c);
+    panels[0].window[0] = -2;
+    panels[0].window[1] = panels[0].window[3] = 2;
+    panels[0].at = 99;
+    equal("a window given, and nothing in it", mpm_draw_cuts(&c, panels, 1, 1, 400, &f), MPM_ERR_ARGUMENT);
+    holds("... is said", strcmp(f.field, "points in the slab") == 0);
+    panels[0] = make_cut();
     equal("no panels", mpm_draw_cuts(&c, panels, 0, 2, 400, &f), MPM_ERR_ARGUMENT);
     panels[1].spacing = 0;
     equal("a panel without spacing", mpm_draw_cuts(&c, panels, 2, 2, 400, &f), MPM_ERR_ARGUMENT);
@@ -420,9 +429,35 @@ static void test_plots(void)
     equal("logarithmic, where positive", mpm_draw_plot(&c, mpm_draw_tile(&c, 2, 1, 0), &p, &f), MPM_OK);
     curves[0].count = curves[1].count = 0;
     equal("nothing to plot", mpm_draw_plot(&c, mpm_draw_tile(&c, 2, 1, 0), &p, &f), MPM_ERR_ARGUMENT);
+    for (i = 0; i < 3; i++) {
+        x[i] = i == 1 ? (mpm_real)INFINITY : (mpm_real)NAN;
+        y[i] = i == 1 ? 0 : (mpm_real)NAN;
+    }
+    s.x = x;
+    s.y = y;
+    s.count = 3;
+    equal("nothing finite to scatter", mpm_draw_scatter(&c, mpm_draw_tile(&c, 2, 1, 1), &s, &f), MPM_ERR_ARGUMENT);
+    holds("... is said", strcmp(f.field, "points of the scatter plot that are finite") == 0);
     s.count = 0;
     equal("nothing to scatter", mpm_draw_scatter(&c, mpm_draw_tile(&c, 2, 1, 1), &s, &f),
           MPM_ERR_ARGUMENT);
+    mpm_draw_canvas_free(&c);
+}
+
+/* Numbers along a cut are wider in other units of length, and have their room. */
+static void test_ticks_room(void)
+{
+    mpm_draw_cut_desc d = make_cut();
+    mpm_draw_canvas c;
+    mpm_fault f;
+    d.window[0] = d.window[2] = -50;
+    d.window[1] = d.window[3] = 50;
+    d.ticks = 1;
+    d.length_scale = 1e3;
+    mpm_draw_canvas_init(&c, 800, 400, NULL, 0);
+    equal("a cut with long numbers", mpm_draw_cut(&c, mpm_draw_tile(&c, 4, 1, 1), &d, &f), MPM_OK);
+    holds("... in its tile", darkness(&c, 200, 0, 400, 400) > 1000);
+    equal("... and not in that beside it", darkness(&c, 0, 0, 205, 400), 0);
     mpm_draw_canvas_free(&c);
 }
 
@@ -527,5 +562,6 @@ int main(void)
     test_color_bar();
     test_plots();
     test_clip();
+    test_ticks_room();
     return check_end();
 }

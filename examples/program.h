@@ -60,6 +60,22 @@ static inline const char *text_in(const char *path, char *text, size_t room)
     return text;
 }
 
+/* FNV-1a, 64 bits, of a text; `h`: the hash of what goes before it, or HASH_NONE. */
+#define HASH_NONE UINT64_C(14695981039346656037)
+static inline uint64_t hash_text(uint64_t h, const char *text)
+{
+    for (; *text; text++) h = (h ^ (uint64_t)(unsigned char)*text) * UINT64_C(1099511628211);
+    return h;
+}
+
+#define HASH_DIGITS 17 /* bytes of a hash in hexadecimal digits */
+static inline const char *hash_digits(uint64_t h, char text[HASH_DIGITS])
+{
+    snprintf(text, HASH_DIGITS, "%08lx%08lx", (unsigned long)(h >> 32) & 0xffffffffu,
+             (unsigned long)(h & 0xffffffffu));
+    return text;
+}
+
 /* What stands behind "key": in the text of a summary, or NULL. */
 static inline const char *json_value(const char *text, const char *key)
 {

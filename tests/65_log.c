@@ -67,6 +67,8 @@ int main(void)
     int k, accepted = 0, lost = 0, changed = 0;
     if (mpm_io_make_directory("build", NULL) < 0) return 1;
     remove(LOG);
+    CHECK_TRUE("FNV-1a of its authors' example",
+               strcmp(hash_digits(hash_text(HASH_NONE, "foobar"), line), "85944171f73967e8") == 0);
     CHECK_EQUAL("no log holds no record", records(), 0);
     for (k = 0; k < 3; k++) {
         r[k] = example(k + 1);

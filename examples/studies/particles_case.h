@@ -346,22 +346,22 @@ static inline int particles_pairs(const impact *s, const particles_case *q)
 }
 
 /* The checksum of both tables, which the summary keeps. */
-static inline const char *particles_sum(const particles_case *q, char sum[STUDY_HASH_TEXT])
+static inline const char *particles_sum(const particles_case *q, char sum[HASH_DIGITS])
 {
     static const char *const name[2] = {"particles.csv", "pairs.csv"};
     char path[PATH_BYTES], one[2] = "";
-    uint64_t h = STUDY_HASH;
+    uint64_t h = HASH_NONE;
     int k, c;
     for (k = 0; k < 2; k++) {
         FILE *f = fopen(file_in(q->out.folder, name[k], path, sizeof path), "rb");
         while (f && (c = fgetc(f)) != EOF) {
             one[0] = (char)c;
-            h = study_hash(h, one);
+            h = hash_text(h, one);
         }
-        h = study_hash(h, f && !ferror(f) ? "\n" : "none");
+        h = hash_text(h, f && !ferror(f) ? "\n" : "none");
         if (f) fclose(f);
     }
-    return study_hash_text(h, sum);
+    return hash_digits(h, sum);
 }
 
 /* summary.json, which is written last */
@@ -371,7 +371,7 @@ static inline int particles_summary(const impact *s, const particles_case *q, co
     const mpm_world *w = &s->world;
     const mpm_totals sums = mpm_body_totals(w, -1);
     long fates[PARTICLE_FATES] = {0}, a;
-    char path[PATH_BYTES], sum[STUDY_HASH_TEXT];
+    char path[PATH_BYTES], sum[HASH_DIGITS];
     mpm_fault fault;
     mpm_io_json j;
     int k;
@@ -420,9 +420,9 @@ static inline int particles_same_build(const char *summary)
 /* Whether the tables are those that the summary was written with; else says so. */
 static inline int particles_whole(const particles_case *q, const char *summary)
 {
-    char sum[STUDY_HASH_TEXT];
+    char sum[HASH_DIGITS];
     const char *at = json_value(summary, "tables");
-    if (at && *at == '"' && !strncmp(at + 1, particles_sum(q, sum), STUDY_HASH_TEXT - 1)) return 1;
+    if (at && *at == '"' && !strncmp(at + 1, particles_sum(q, sum), HASH_DIGITS - 1)) return 1;
     fprintf(stderr, "%s: the tables are damaged: the scene is run again\n", q->out.folder);
     return 0;
 }

@@ -8,13 +8,12 @@
    SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "mpm_spray.h"
-#include "mpm_io.h"
 
 #include <stdarg.h>
 #include <time.h>
 
-#include "options.h"
 #include "plots.h"
+#include "program.h"
 #include "spray_view.h"
 
 static const char *const program = "examples/studies/spray_study.c";
@@ -153,15 +152,6 @@ static int run_one(const run_case *c, double *value)
 
 #define RECORD_BYTES (40 * (8 + VALUES) + 40)
 
-/* FNV-1a, 64 bits, of n characters. */
-static uint64_t checksum(const char *text, size_t n)
-{
-    uint64_t h = UINT64_C(14695981039346656037);
-    size_t i;
-    for (i = 0; i < n; i++) h = (h ^ (uint64_t)(unsigned char)text[i]) * UINT64_C(1099511628211);
-    return h;
-}
-
 static size_t put_number(char *line, size_t used, double value)
 {
     char number[40];
@@ -172,10 +162,9 @@ static size_t put_number(char *line, size_t used, double value)
 
 static size_t put_sum(char *line, size_t used)
 {
-    const uint64_t h = checksum(line, used);
-    char text[40];
-    snprintf(text, sizeof text, "%08lx%08lx\n", (unsigned long)(h >> 32), (unsigned long)(h & 0xffffffffu));
-    return mpm_append(line, RECORD_BYTES, used, text);
+    char text[HASH_DIGITS];
+    used = mpm_append(line, RECORD_BYTES, used, hash_digits(hash_text(HASH_NONE, line), text));
+    return mpm_append(line, RECORD_BYTES, used, "\n");
 }
 
 /* A run as a line: the case, the values, and behind them the checksum of all that stands before it. */
@@ -755,7 +744,7 @@ static void report_rate(FILE *f, const study *st)
         verdict(rate_step(st, steepest) > (of(st, BOTH, 1, 7, RATE) - of(st, BOTH, 1, 0, RATE)) / 4, 1));
 }
 
-static int report(const study *st, const long_run *l, double once, double eightfold)
+static int write_report(const study *st, const long_run *l, double once, double eightfold)
 {
     mpm_io_file file;
     mpm_fault fault;
@@ -833,7 +822,7 @@ static int carry_out(int argc, char **argv)
     eightfold = fmin(cost(8e5), cost(8e5));
     if (write_table(&st, &fault) < 0 || plot_b7(&st, &fault) < 0 || plot_b9(&st, &fault) < 0) goto fail;
     if (pictures(&st, &fault)) goto fail;
-    return report(&st, &l, once, eightfold) ? 1 : 0;
+    return write_report(&st, &l, once, eightfold) ? 1 : 0;
 fail:
     mpm_io_fault_text(text, sizeof text, &fault);
     fprintf(stderr, "error: %s\n", text);

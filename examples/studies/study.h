@@ -357,49 +357,33 @@ static inline int study_run(study *s, const impact_case *c, double *value, char 
 
 /* ---- finished runs ------------------------------------------------------------------------- */
 
-/* FNV-1a, 64 bits, of a text; `h`: the hash of what goes before it, or STUDY_HASH. */
-#define STUDY_HASH UINT64_C(14695981039346656037)
-static inline uint64_t study_hash(uint64_t h, const char *text)
-{
-    for (; *text; text++) h = (h ^ (uint64_t)(unsigned char)*text) * UINT64_C(1099511628211);
-    return h;
-}
-
-#define STUDY_HASH_TEXT 17 /* bytes of a hash as text */
-static inline const char *study_hash_text(uint64_t h, char text[STUDY_HASH_TEXT])
-{
-    snprintf(text, STUDY_HASH_TEXT, "%08lx%08lx", (unsigned long)(h >> 32) & 0xffffffffu,
-             (unsigned long)(h & 0xffffffffu));
-    return text;
-}
-
 /* folder/runs/<hash of the key>.json, or "" where that is too long. Returns path. */
 static inline const char *study_path(const study *s, const char *key, char *path, size_t n)
 {
-    char name[40] = "runs/", hash[STUDY_HASH_TEXT];
-    strcat(strcat(name, study_hash_text(study_hash(STUDY_HASH, key), hash)), ".json");
+    char name[40] = "runs/", hash[HASH_DIGITS];
+    strcat(strcat(name, hash_digits(hash_text(HASH_NONE, key), hash)), ".json");
     return file_in(s->folder, name, path, n);
 }
 
 /* The checksum of a run: of its case and of every value as it is written. */
-static inline const char *study_sum(const char *key, const double *value, char text[STUDY_HASH_TEXT])
+static inline const char *study_sum(const char *key, const double *value, char text[HASH_DIGITS])
 {
-    uint64_t h = study_hash(STUDY_HASH, key);
+    uint64_t h = hash_text(HASH_NONE, key);
     char number[OPTION_NUMBER];
     int k;
     for (k = 0; k < STUDY_VALUES; k++) {
-        h = study_hash(h, isfinite(value[k]) ? " " : " null");
+        h = hash_text(h, isfinite(value[k]) ? " " : " null");
         if (!isfinite(value[k])) continue;
         mpm_io_number_text(number, sizeof number, value[k]);
-        h = study_hash(h, number);
+        h = hash_text(h, number);
     }
-    return study_hash_text(h, text);
+    return hash_digits(h, text);
 }
 
 /* Takes a run out of the text of its file. Returns 1 if it is whole and of this case. */
 static inline int study_take(const char *text, const char *key, double *value)
 {
-    char sum[STUDY_HASH_TEXT], *end;
+    char sum[HASH_DIGITS], *end;
     const char *at = json_value(text, "case");
     int k;
     if (!at || *at != '"' || strncmp(at + 1, key, strlen(key)) || at[1 + strlen(key)] != '"') return 0;
@@ -434,7 +418,7 @@ static inline int study_find(const study *s, const impact_case *c, double *value
 
 static inline int study_write(const char *path, const char *key, const double *value, mpm_fault *fault)
 {
-    char sum[STUDY_HASH_TEXT];
+    char sum[HASH_DIGITS];
     mpm_io_json j;
     int k;
     if (mpm_io_json_begin(&j, path, fault) < 0) return 0;

@@ -11,6 +11,9 @@
 #define LOG "build/test-log"
 #endif
 
+#define SAID LOG ".said"
+
+static char said[1 << 20];
 static record kept[RECORDS + 1];
 
 static record example(long seed)
@@ -77,7 +80,7 @@ int main(void)
     CHECK_EQUAL("three come back bit for bit", records(), 3);
     record_line(&r[0], line);
     n = strlen(line);
-    if (!freopen("build/test-log.said", "w", stderr)) return 1; /* a notice for each */
+    if (!freopen(SAID, "w", stderr)) return 1; /* a notice for each */
     for (cut = 1; cut < n; cut++) {
         write_log(line, n - cut);
         accepted += records() != 0;
@@ -99,5 +102,11 @@ int main(void)
                mpm_io_make_directory(LOG "/x", NULL) == MPM_OK && records() == -1000);
     remove(LOG "/x");
     remove(LOG);
+    s.data = LOG "/nowhere";
+    s.time = 0.002;
+    fflush(stderr);
+    CHECK_EQUAL("pictures that cannot be written", pictures(&s), -1);
+    fflush(stderr);
+    CHECK_TRUE("... are said to be so", strstr(text_in(SAID, said, sizeof said), LOG "/nowhere/spray_b8.png: ") != NULL);
     return check_end();
 }

@@ -91,17 +91,25 @@ static mpm_spray_desc description(const run_case *c)
     return d;
 }
 
+/* The fault in words, of what is under way. */
+static int fail(const mpm_fault *fault, const char *what)
+{
+    report(fault, what);
+    return -1;
+}
+
+/* Begins a spray. Returns 0, or -1 after a message. */
+static int begin(mpm_spray *s, const mpm_spray_desc *d)
+{
+    return mpm_spray_init(s, d, NULL, 0) < 0 ? fail(&s->fault, "spray") : 0;
+}
+
 /* Runs s to time t. Returns 0, or -1 after a message. */
 static int run_to(mpm_spray *s, double t)
 {
     int64_t steps = (int64_t)(t / (double)s->desc.dt + 0.5);
     while (s->tally.step < steps)
-        if (mpm_spray_step(s) < 0) {
-            char text[256];
-            mpm_io_fault_text(text, sizeof text, &s->fault);
-            fprintf(stderr, "error: %s\n", text);
-            return -1;
-        }
+        if (mpm_spray_step(s) < 0) return fail(&s->fault, "spray");
     return 0;
 }
 
@@ -133,17 +141,14 @@ static int run_one(const run_case *c, double *value)
 {
     mpm_spray s;
     mpm_spray_desc d = description(c);
-    clock_t begin = clock();
+    clock_t begun = clock();
     int k, failed = 0;
-    if (mpm_spray_init(&s, &d, NULL, 0) < 0) {
-        fprintf(stderr, "error: %s = %g\n", s.fault.field, (double)s.fault.value);
-        return -1;
-    }
+    if (begin(&s, &d)) return -1;
     for (k = 0; k < TIMES && !failed; k++) {
         failed = run_to(&s, c->time * (k + 1) / TIMES);
         value[COUNTS + k] = (double)s.tally.deposited;
     }
-    measure(&s, (double)(clock() - begin) / CLOCKS_PER_SEC, value);
+    measure(&s, (double)(clock() - begun) / CLOCKS_PER_SEC, value);
     mpm_spray_free(&s);
     return failed;
 }
@@ -494,39 +499,60 @@ static mpm_status plot_b9(const study *st, mpm_fault *fault)
     return draw_panels(path, p, 6, fault);
 }
 
-/* The pictures of Figs. 8 and 10 need the particles: the runs are made again, short of resumable. */
-static int pictures(const study *st, mpm_fault *fault)
-{
-    char path[PATH_BYTES], title[80];
+/* The pictures of Figs. 8 and 10, and what they are drawn from. */
+typedef struct gallery {
     mpm_draw_canvas plume, top;
     spray_columns columns;
-    int k, row, bad = 0;
-    if (mpm_draw_canvas_init(&plume, 1300, 1560, NULL, 0) < 0 || mpm_draw_canvas_init(&top, 1560, 1160, NULL, 0) < 0 ||
-        spray_columns_init(&columns, 60000))
-        return fprintf(stderr, "error: no memory for pictures\n"), -1;
-    for (k = 0; k < SPEEDS && !bad; k++)
-        for (row = 0; row < 2 && !bad; row++) {
-            run_case c = basic(st, speeds[k], row ? 1e6 : 1e4, 1);
-            mpm_spray_desc d = description(&c);
-            mpm_spray s;
-            bad = mpm_spray_init(&s, &d, NULL, 0) < 0 || run_to(&s, c.time);
-            snprintf(title, sizeof title, "%g m/s, alpha %g", speeds[k], c.alpha);
-            if (!bad && s.deposited > 0)
-                bad = spray_draw_deposit(&top, mpm_draw_tile(&top, SPEEDS, 2, row * SPEEDS + k), &s, &columns, 20,
-                                         title, fault) < 0;
-            if (!bad && row)
-                bad = spray_draw_plume(&plume, mpm_draw_tile(&plume, 1, SPEEDS, k), &s, &columns, speeds[k],
-                                       title, fault) < 0;
-            mpm_spray_free(&s);
-        }
-    file_in(st->data, "spray_b8.png", path, sizeof path);
-    bad = bad || mpm_io_png(path, plume.rgb, plume.width, plume.height, program, fault) < 0;
-    file_in(st->data, "spray_b10.png", path, sizeof path);
-    bad = bad || mpm_io_png(path, top.rgb, top.width, top.height, program, fault) < 0;
-    mpm_draw_canvas_free(&plume);
-    mpm_draw_canvas_free(&top);
-    spray_columns_free(&columns);
-    return bad ? -1 : 0;
+} gallery;
+
+/* One case in both pictures. Returns 0, or -1 after a message. */
+static int draw_case(const study *st, gallery *g, int k, int low)
+{
+    run_case c = basic(st, speeds[k], low ? 1e6 : 1e4, 1);
+    mpm_spray_desc d = description(&c);
+    mpm_spray s;
+    mpm_fault fault;
+    char title[80];
+    int failed;
+    if (begin(&s, &d)) return -1;
+    snprintf(title, sizeof title, "%g m/s, alpha %g", speeds[k], c.alpha);
+    failed = run_to(&s, c.time);
+    if (!failed && s.deposited > 0 &&
+        spray_draw_deposit(&g->top, mpm_draw_tile(&g->top, SPEEDS, 2, low * SPEEDS + k), &s, &g->columns, 20, title,
+                           &fault) < 0)
+        failed = fail(&fault, "picture of the deposit");
+    if (!failed && low &&
+        spray_draw_plume(&g->plume, mpm_draw_tile(&g->plume, 1, SPEEDS, k), &s, &g->columns, speeds[k], title,
+                         &fault) < 0)
+        failed = fail(&fault, "picture of the plume");
+    mpm_spray_free(&s);
+    return failed;
+}
+
+static int write_picture(const study *st, const char *name, const mpm_draw_canvas *c)
+{
+    char path[PATH_BYTES];
+    mpm_fault fault;
+    file_in(st->data, name, path, sizeof path);
+    return mpm_io_png(path, c->rgb, c->width, c->height, program, &fault) < 0 ? fail(&fault, path) : 0;
+}
+
+/* These pictures need the particles: the runs are made again, short of resumable. Returns 0, or -1 after a message. */
+static int pictures(const study *st)
+{
+    gallery g;
+    int k, failed = 0;
+    memset(&g, 0, sizeof g);
+    if (mpm_draw_canvas_init(&g.plume, 1300, 1560, NULL, 0) < 0 ||
+        mpm_draw_canvas_init(&g.top, 1560, 1160, NULL, 0) < 0 || spray_columns_init(&g.columns, 60000))
+        failed = complain("no memory for pictures") - 1;
+    for (k = 0; k < 2 * SPEEDS && !failed; k++) failed = draw_case(st, &g, k / 2, k % 2);
+    if (!failed) failed = write_picture(st, "spray_b8.png", &g.plume);
+    if (!failed) failed = write_picture(st, "spray_b10.png", &g.top);
+    mpm_draw_canvas_free(&g.plume);
+    mpm_draw_canvas_free(&g.top);
+    spray_columns_free(&g.columns);
+    return failed;
 }
 
 /* ---- the long run and the cost ------------------------------------------------------------- */
@@ -538,48 +564,59 @@ typedef struct long_run {
     int64_t not_converged;
 } long_run;
 
-/* B-6: 50 050 particles at alpha 1e5. */
+/* What the spray of the long run shows at its end. */
+static void measure_long(const mpm_spray *s, double cpu, long_run *r)
+{
+    int32_t i;
+    r->cpu = cpu;
+    r->megabytes = (double)s->bytes / 1e6;
+    r->per_second = (double)s->tally.particle_steps * (double)s->desc.dt / cpu;
+    r->not_converged = s->tally.not_converged;
+    r->inside_10mm = r->beyond_20mm = 0;
+    mpm_spray_measure(s, &r->m);
+    for (i = 0; i < s->deposited; i++) {
+        double distance = hypot((double)s->deposit_x[3 * i + 1], (double)s->deposit_x[3 * i + 2]);
+        r->inside_10mm += (distance <= 0.0105) / (double)s->deposited;
+        r->beyond_20mm += (distance > 0.02) / (double)s->deposited;
+    }
+}
+
+/* B-6: 50 050 particles at alpha 1e5. Returns 0, or -1 after a message. */
 static int run_long(long_run *r)
 {
     mpm_spray s;
     mpm_spray_desc d = mpm_spray_desc_default();
-    clock_t begin;
-    int32_t i;
-    if (mpm_spray_init(&s, &d, NULL, 0) < 0) return -1;
-    begin = clock();
-    if (run_to(&s, 0.5005)) return -1;
-    r->cpu = (double)(clock() - begin) / CLOCKS_PER_SEC;
-    r->megabytes = (double)s.bytes / 1e6;
-    r->per_second = (double)s.tally.particle_steps * (double)d.dt / r->cpu;
-    r->not_converged = s.tally.not_converged;
-    r->inside_10mm = r->beyond_20mm = 0;
-    mpm_spray_measure(&s, &r->m);
-    for (i = 0; i < s.deposited; i++) {
-        double distance = hypot((double)s.deposit_x[3 * i + 1], (double)s.deposit_x[3 * i + 2]);
-        r->inside_10mm += (distance <= 0.0105) / (double)s.deposited;
-        r->beyond_20mm += (distance > 0.02) / (double)s.deposited;
-    }
+    clock_t begun;
+    int failed;
+    if (begin(&s, &d)) return -1;
+    begun = clock();
+    failed = run_to(&s, 0.5005);
+    if (!failed) measure_long(&s, (double)(clock() - begun) / CLOCKS_PER_SEC, r);
     mpm_spray_free(&s);
-    return 0;
+    return failed;
 }
 
-/* Nanoseconds per particle-step between 20 and 30 ms, when the plume has filled. */
+/* Nanoseconds per particle-step between 20 and 30 ms, when the plume has filled; NaN after a message. */
 static double cost(double feed)
 {
     mpm_spray s;
     mpm_spray_desc d = mpm_spray_desc_default();
-    clock_t begin;
-    double work, cpu;
+    clock_t begun;
+    double work = 0, cpu = 0;
+    int failed;
     d.feed = (mpm_real)feed;
     d.capacity = 40000;
-    if (mpm_spray_init(&s, &d, NULL, 0) < 0 || run_to(&s, 0.02)) return 0;
-    work = (double)s.tally.particle_steps;
-    begin = clock();
-    if (run_to(&s, 0.03)) return 0;
-    cpu = (double)(clock() - begin) / CLOCKS_PER_SEC;
-    work = (double)s.tally.particle_steps - work;
+    if (begin(&s, &d)) return NAN;
+    failed = run_to(&s, 0.02);
+    if (!failed) {
+        work = (double)s.tally.particle_steps;
+        begun = clock();
+        failed = run_to(&s, 0.03);
+        cpu = (double)(clock() - begun) / CLOCKS_PER_SEC;
+        work = (double)s.tally.particle_steps - work;
+    }
     mpm_spray_free(&s);
-    return 1e9 * cpu / work;
+    return failed ? NAN : 1e9 * cpu / work;
 }
 
 /* ---- the report ---------------------------------------------------------------------------- */
@@ -808,7 +845,6 @@ static int carry_out(int argc, char **argv)
     mpm_fault fault = {MPM_OK, NULL, 0, -1};
     long_run l;
     double once, eightfold;
-    char text[256];
     int parsed;
     memset(&st, 0, sizeof st);
     st.records = records;
@@ -820,12 +856,12 @@ static int carry_out(int argc, char **argv)
     if (log_read(&st) || plan(&st) || run_long(&l)) return 1;
     once = fmin(cost(1e5), cost(1e5));
     eightfold = fmin(cost(8e5), cost(8e5));
+    if (isnan(once) || isnan(eightfold)) return 1;
     if (write_table(&st, &fault) < 0 || plot_b7(&st, &fault) < 0 || plot_b9(&st, &fault) < 0) goto fail;
-    if (pictures(&st, &fault)) goto fail;
+    if (pictures(&st)) return 1;
     return write_report(&st, &l, once, eightfold) ? 1 : 0;
 fail:
-    mpm_io_fault_text(text, sizeof text, &fault);
-    fprintf(stderr, "error: %s\n", text);
+    report(&fault, st.data);
     return 1;
 }
 

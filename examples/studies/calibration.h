@@ -116,13 +116,12 @@ static inline double calibration_ratio(const calibration *q, int size, const dou
 
 static inline int calibration_bonds(const calibration *q, int size, const double *value)
 {
-    if (!strcmp(q->rule, "stays")) {
-        critical_rule r = critical_rule_default();
-        r.name = q->rule;
-        r.stays = q->stays;
-        return critical_bonds(&r, q->diameter[size], value);
-    }
-    return value[STUDY_PBCP] >= q->pbcp[size] && calibration_ratio(q, size, value) <= q->restitution[size];
+    critical_rule r = critical_rule_default();
+    r.name = q->rule;
+    r.stays = q->stays;
+    r.pbcp = q->pbcp[size];
+    r.v_rest = q->restitution[size] * q->velocity[size];
+    return critical_bonds(&r, q->diameter[size], value);
 }
 
 /* What is known of one size: the class of each node (-1: not run) and whether the sweep wants it. */
@@ -184,13 +183,12 @@ typedef struct calibration_result {
     int same;            /* 1: both sizes have the same class everywhere, and one boundary: no crossing is named */
 } calibration_result;
 
-/* What is known of one size, and the boundary fitted to it. */
-static inline void calibration_fit(const calibration *q, const study *s, int size, calibration_side *side)
+/* The boundary between the classes of a size's map. */
+static inline void calibration_fit(const calibration *q, calibration_side *side)
 {
     static double x1[CALIBRATION_NODES], x2[CALIBRATION_NODES];
     static int outcome[CALIBRATION_NODES];
     long k;
-    calibration_look(q, s, size, &side->map);
     side->tests = side->bonded = 0;
     for (k = 0; k < calibration_nodes(q); k++) {
         if (side->map.bonds[k] < 0) continue;
@@ -205,12 +203,12 @@ static inline void calibration_fit(const calibration *q, const study *s, int siz
     if (side->tests < 6) side->why = "fewer than six runs";
 }
 
-/* Fits both sizes and crosses their boundaries. */
-static inline void calibration_collect(const calibration *q, const study *s, calibration_result *r)
+/* Fits both sizes' maps and crosses their boundaries. */
+static inline void calibration_cross(const calibration *q, calibration_result *r)
 {
     double low[2], high[2];
     int size, k, fitted;
-    for (size = 0; size < 2; size++) calibration_fit(q, s, size, &r->side[size]);
+    for (size = 0; size < 2; size++) calibration_fit(q, &r->side[size]);
     low[0] = calibration_x(q, q->gc[0]);
     low[1] = calibration_x(q, q->gdot[0]);
     high[0] = calibration_x(q, q->gc[1]);
@@ -220,6 +218,14 @@ static inline void calibration_collect(const calibration *q, const study *s, cal
     r->points = fitted && !r->same ? mpm_logistic_cross(&r->side[0].fit, &r->side[1].fit, low, high, r->point) : 0;
     for (k = 0; k < r->points; k++)
         for (size = 0; size < 2; size++) r->point[k][size] = calibration_from(q, r->point[k][size]);
+}
+
+/* The same of what has been run so far. */
+static inline void calibration_collect(const calibration *q, const study *s, calibration_result *r)
+{
+    int size;
+    for (size = 0; size < 2; size++) calibration_look(q, s, size, &r->side[size].map);
+    calibration_cross(q, r);
 }
 
 /* Runs everything the sweep wants, one task after the other. As study_need. */

@@ -59,15 +59,16 @@ static void say_edges(work *w, const calibration *q, const calibration_result *r
 }
 
 /* G_c of the crossings by fits with other ridges: "2636; 3390; -". */
-static void say_ridges(work *w, const calibration *q)
+static void say_ridges(work *w, const calibration *q, const calibration_result *known)
 {
     static const double ridge[3] = {1e-3, 1e-5, 1e-6};
     static calibration_result r;
     int i, k;
+    r = *known;
     for (i = 0; i < 3; i++) {
         calibration other = *q;
         other.ridge = ridge[i];
-        calibration_collect(&other, &w->s, &r);
+        calibration_cross(&other, &r);
         say(w, "%s", i ? "; " : " | ");
         for (k = 0; k < r.points; k++) say(w, "%s%.0f", k ? ", " : "", r.point[k][0]);
         if (r.points == 0) say(w, "-");
@@ -96,7 +97,7 @@ static void say_calibration(work *w, const calibration *q, const calibration_res
     say_edges(w, q, r, sum);
     say(w, " [%s](data/%s)", r->points ? "crossing" : "none", plot);
     for (k = 0; k < r->points; k++) say(w, "%s%.0f, %.3g", k ? "; " : ": ", r->point[k][0], r->point[k][1]);
-    say_ridges(w, q);
+    say_ridges(w, q, r);
     say(w, " | ");
     say_only(w, q, r);
     say(w, " |\n");

@@ -2,8 +2,8 @@
    Version 0.2.0. SPDX-License-Identifier: MIT
 
    DO THIS
-     #define MPM_IMPLEMENTATION in ONE file, then include mpm.h and mpm_bond.h there; "mpm_bond.h" alone
-     everywhere else. Put mpm_bond_grow and mpm_bond_nodes into your loop, between mpm_contact_find and
+     #define MPM_IMPLEMENTATION in ONE file, then include "mpm_bond.h" there: it brings mpm.h with it. The same line
+     without the macro everywhere else. Put mpm_bond_grow and mpm_bond_nodes into your loop, between mpm_contact_find and
      mpm_contact_apply; or call mpm_bond_step. Link with -lm.
 
      A second model of bonding: bond.rule = MPM_BOND_USER with your bond.grow, which says by how much D of a
@@ -195,7 +195,8 @@ MPM_API mpm_real mpm_bond_of_pair(const mpm_bond *b, const mpm_world *w, const m
    Test: 30_bond. */
 MPM_API void mpm_bond_nodes(const mpm_bond *b, mpm_world *w);
 
-/* mpm_step with the bond in it. Test: 30_bond. */
+/* mpm_step with the bond in it, of dt [time] > 0. Returns MPM_OK, MPM_RETIRED; an error of mpm_locate, before the step
+   began; or an error of mpm_stress, with the step incomplete. w->fault names it. Test: 30_bond. */
 MPM_API mpm_status mpm_bond_step(const mpm_bond *b, mpm_world *w, mpm_real dt);
 
 /* ---- measures ------------------------------------------------------------------------------- */

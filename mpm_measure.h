@@ -2,8 +2,8 @@
    literature would say. Version 0.2.0. SPDX-License-Identifier: MIT
 
    DO THIS
-     #define MPM_IMPLEMENTATION in ONE file, then include mpm.h and mpm_measure.h there; "mpm_measure.h" alone
-     everywhere else. Call the measures between steps, on any world. Link with -lm.
+     #define MPM_IMPLEMENTATION in ONE file, then include "mpm_measure.h" there: it brings mpm.h with it. The same
+     line without the macro everywhere else. Call the measures between steps, on any world. Link with -lm.
 
    A COMPLETE PROGRAM (what flies off without forces is seen to move as it began, at 3 m/s)
        #define MPM_IMPLEMENTATION
@@ -28,7 +28,7 @@
    CONTENTS
      rebound and shape     mpm_rebound_of, mpm_rebound_from, mpm_splat_measure
      the interface         mpm_interface_of
-     pulling apart         mpm_grip_apply, mpm_pull_begin, mpm_pull_apply
+     pulling apart         mpm_grip_apply, mpm_pull_desc_default, mpm_pull_begin, mpm_pull_apply
      literature            mpm_bonded_fraction, mpm_relative_strength, mpm_critical_velocity_*
      calibration           mpm_logistic_*
 
@@ -54,6 +54,7 @@
 #define mpm_rebound_from mpm_rebound_from_f32
 #define mpm_splat_measure mpm_splat_measure_f32
 #define mpm_grip_apply mpm_grip_apply_f32
+#define mpm_pull_desc_default mpm_pull_desc_default_f32
 #define mpm_pull_begin mpm_pull_begin_f32
 #define mpm_pull_apply mpm_pull_apply_f32
 #define mpm_bonded_fraction mpm_bonded_fraction_f32
@@ -140,6 +141,7 @@ MPM_API void mpm_grip_apply(mpm_grip *g, mpm_world *w);
    below a height, the upper drawn up above another. Heights are moved to the middle between grid planes,
    so that they do not pass one soon. */
 typedef struct mpm_pull_desc {
+    unsigned mark;             /* set by mpm_pull_desc_default */
     int32_t upper, lower;      /* bodies */
     mpm_real above, below;     /* upper is gripped above, lower below; above > below [length] */
     int axes;                  /* directions the grips prescribe: 4: z alone, 7: all */
@@ -147,6 +149,10 @@ typedef struct mpm_pull_desc {
     mpm_real sample;           /* time over which a force is averaged, > 0: some transits of the waves */
     double area;               /* that stress is referred to [length^2], > 0 */
 } mpm_pull_desc;
+
+/* Body 0 off body 1, in all directions, without a ramp; heights, velocity, sample and area must be set.
+   Test: 32_pull. */
+MPM_API mpm_pull_desc mpm_pull_desc_default(void);
 
 typedef struct mpm_pull {
     mpm_pull_desc desc;
@@ -405,12 +411,21 @@ static inline mpm_real mpm__between_planes(const mpm_world *w, mpm_real z)
     return (mpm_real)(origin + cell * (floor(((double)z - origin) / cell) + 0.5));
 }
 
-MPM_API mpm_status mpm_pull_begin(mpm_pull *p, const mpm_world *w, const mpm_pull_desc *d, mpm_fault *f)
+MPM_API mpm_pull_desc mpm_pull_desc_default(void)
 {
-    const mpm_real reach = (mpm_real)w->nodes_per_axis[2] * w->desc.cell; /* more than the grid */
+    mpm_pull_desc d;
+    memset(&d, 0, sizeof d);
+    d.mark = MPM_MARK;
+    d.lower = 1;
+    d.axes = 7;
+    return d;
+}
+
+static inline mpm_status mpm__pull_check(const mpm_pull_desc *d, const mpm_world *w, mpm_fault *f)
+{
     const int known = d->upper >= 0 && d->upper < w->bodies && d->lower >= 0 && d->lower < w->bodies;
-    mpm_status s;
-    memset(p, 0, sizeof *p);
+    mpm_status s = mpm_want(d->mark == MPM_MARK, f, "desc (not from mpm_pull_desc_default)", (mpm_real)d->mark, -1);
+    if (s != MPM_OK) return s;
     if ((s = mpm_want(known && d->upper != d->lower, f, "pull bodies", (mpm_real)d->lower, d->upper)) != MPM_OK)
         return s;
     if ((s = mpm_want(1, f, "pull below", d->below, -1)) != MPM_OK) return s;
@@ -419,7 +434,15 @@ MPM_API mpm_status mpm_pull_begin(mpm_pull *p, const mpm_world *w, const mpm_pul
     if ((s = mpm_want(d->velocity > 0, f, "pull velocity", d->velocity, -1)) != MPM_OK) return s;
     if ((s = mpm_want(d->ramp >= 0, f, "pull ramp", d->ramp, -1)) != MPM_OK) return s;
     if ((s = mpm_want(d->sample > 0, f, "pull sample", d->sample, -1)) != MPM_OK) return s;
-    if ((s = mpm_want(d->area > 0, f, "pull area", (mpm_real)d->area, -1)) != MPM_OK) return s;
+    return mpm_want(d->area > 0, f, "pull area", (mpm_real)d->area, -1);
+}
+
+MPM_API mpm_status mpm_pull_begin(mpm_pull *p, const mpm_world *w, const mpm_pull_desc *d, mpm_fault *f)
+{
+    const mpm_real reach = (mpm_real)w->nodes_per_axis[2] * w->desc.cell; /* more than the grid */
+    const mpm_status s = mpm__pull_check(d, w, f);
+    memset(p, 0, sizeof *p);
+    if (s != MPM_OK) return s;
     p->desc = *d;
     p->grip[0].body = d->upper;
     p->grip[0].low = mpm__between_planes(w, d->above);

@@ -48,12 +48,11 @@ static int check(const pull_case *c, char *m, size_t n)
 static mpm_status describe(mpm_pull *p, const impact *s, const impact_case *c, const pull_case *o,
                            const mpm_interface *met, mpm_fault *fault)
 {
-    mpm_pull_desc d;
+    mpm_pull_desc d = mpm_pull_desc_default();
     d.upper = IMPACT_PARTICLE;
     d.lower = IMPACT_SUBSTRATE;
     d.above = (mpm_real)(mpm_splat_measure(&s->world, d.upper, d.lower, 60).top - o->grip);
     d.below = (mpm_real)(-c->substrate_height + c->cell);
-    d.axes = 7;
     d.velocity = (mpm_real)o->velocity;
     d.ramp = (mpm_real)(o->ramp * 1e-3);
     d.sample = (mpm_real)(o->sample * 1e-3);

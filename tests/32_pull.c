@@ -33,9 +33,7 @@ static mpm_world cubes(mpm_material *m, double bond)
 /* Grips within one cell of the ends: the planes z = 3 and z = -3 and beyond, 6 um between them. */
 static mpm_pull_desc pulling(double velocity)
 {
-    mpm_pull_desc d;
-    d.upper = 0;
-    d.lower = 1;
+    mpm_pull_desc d = mpm_pull_desc_default();
     d.above = MPM_R(2.5);
     d.below = MPM_R(-2.5);
     d.axes = 4;
@@ -176,6 +174,15 @@ static void refusals(void)
     mpm_pull p;
     CHECK_EQUAL("a pull", mpm_pull_begin(&p, &w, &d, &f), MPM_OK);
     CHECK_NEAR("grips between planes", p.grip[0].low, 2.5, 1e-6);
+    d.mark = 0;
+    CHECK_EQUAL("a description made by hand", mpm_pull_begin(&p, &w, &d, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... is named", strstr(f.field, "mpm_pull_desc_default") != NULL);
+    d = mpm_pull_desc_default();
+    CHECK_EQUAL("one that is not filled in", mpm_pull_begin(&p, &w, &d, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... is named by its field", !strcmp(f.field, "pull above"));
+    CHECK_EQUAL("body 0 off body 1", d.upper + 10 * d.lower, 10);
+    CHECK_EQUAL("... in all directions", d.axes, 7);
+    d = pulling(1);
     d.upper = 1;
     CHECK_EQUAL("a body from itself", mpm_pull_begin(&p, &w, &d, &f), MPM_ERR_ARGUMENT);
     d = pulling(1);

@@ -16,8 +16,7 @@
    The loop in draw() is the method with a grip in it. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "impact_options.h"
-#include "mpm_draw.h"
-#include "program.h"
+#include "output.h"
 
 /* What to do after the impact. */
 typedef struct pull_case {
@@ -96,31 +95,29 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
     return 1;
 }
 
-/* The end of the pull beside its curve. */
+/* The section at the end of the pull: room for the particle as it was, whatever its shape, and for its way. */
+static void describe_picture(const impact *s, const impact_case *c, const pull_case *o, const mpm_pull *p,
+                             output_picture *picture)
+{
+    const output out = output_of(o->folder, "pull", "um", "ns", 1);
+    output_cuts(&out, &s->world, c->spacing, NULL, picture);
+    output_window(picture, 1.1 * c->substrate_diameter / 2, -1.05 * c->substrate_height,
+                  2.2 * impact_half_height(c) + p->separation);
+    snprintf(picture->title, sizeof picture->title, "%g um at %g m/s, drawn off", c->diameter, c->velocity);
+    snprintf(picture->time, sizeof picture->time, "at %.2f um", p->separation);
+}
+
+/* That section beside the curve of the pull. */
 static int write_picture(const impact *s, const impact_case *c, const pull_case *o, const mpm_pull *p, const curve *k)
 {
-    const mpm_world *w = &s->world;
-    mpm_draw_cut_desc cut = mpm_draw_cut_of(w, w->points.plastic_strain);
     mpm_draw_plot_desc plot = mpm_draw_plot_desc_default();
     mpm_draw_curve line;
     mpm_draw_canvas canvas;
+    output_picture section;
     mpm_fault fault;
-    char path[1024], title[96], note[96];
-    const double edge = 1.1 * c->substrate_diameter / 2;
+    char path[PATH_BYTES];
     int ok;
-    snprintf(title, sizeof title, "%g um at %g m/s, drawn off", c->diameter, c->velocity);
-    snprintf(note, sizeof note, "at %.2f um", p->separation);
-    cut.at = w->desc.geometry == MPM_3D && w->desc.side[2] == MPM_SIDE_SYMMETRY ? c->spacing / 2 : 0;
-    cut.mirror = w->desc.side[0] == MPM_SIDE_SYMMETRY;
-    cut.window[0] = -edge;
-    cut.window[1] = edge;
-    cut.window[2] = -1.05 * c->substrate_height;
-    cut.window[3] = 1.1 * c->diameter + p->separation;
-    cut.title = title;
-    cut.time = note;
-    cut.label = "effective plastic strain";
-    cut.high = 4;
-    cut.length_unit = "um";
+    describe_picture(s, c, o, p, &section);
     line.name = NULL;
     line.count = k->count;
     line.x = k->separation;
@@ -134,7 +131,7 @@ static int write_picture(const impact *s, const impact_case *c, const pull_case 
     plot.y_label = "stress (MPa)";
     if (mpm_draw_canvas_init(&canvas, 1500, 700, NULL, 0) != MPM_OK) return complain("no memory for the picture");
     file_in(o->folder, "pull.png", path, sizeof path);
-    ok = mpm_draw_cut(&canvas, mpm_draw_tile(&canvas, 2, 1, 0), &cut, &fault) >= 0 &&
+    ok = mpm_draw_cut(&canvas, mpm_draw_tile(&canvas, 2, 1, 0), &section.cut[0], &fault) >= 0 &&
          (k->count < 2 || mpm_draw_plot(&canvas, mpm_draw_tile(&canvas, 2, 1, 1), &plot, &fault) >= 0) &&
          mpm_io_png(path, canvas.rgb, canvas.width, canvas.height, "mpm.h examples/pull", &fault) >= 0;
     mpm_draw_canvas_free(&canvas);
@@ -145,7 +142,7 @@ static int write_summary(const impact *s, const pull_case *o, const impact_resul
                          const mpm_pull *p, const option *options, int n)
 {
     const int whole = impact_copies(s);
-    char path[1024];
+    char path[PATH_BYTES];
     mpm_fault fault;
     mpm_io_json j;
     mpm_io_json_begin(&j, file_in(o->folder, "summary.json", path, sizeof path), &fault);
@@ -179,7 +176,7 @@ static int run(impact *s, const impact_case *ic, const pull_case *o, curve *c, c
     mpm_io_csv table;
     mpm_fault fault;
     mpm_pull p;
-    char path[1024], grip[80];
+    char path[PATH_BYTES], grip[80];
     int drawn;
     while (s->world.steps < s->steps)
         if (impact_step(s) < 0) return report(&s->world.fault, "impact");

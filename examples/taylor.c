@@ -42,7 +42,7 @@ static int write_picture(const taylor *s, const taylor_case *c, output *o)
 
 static int write_profile(const taylor *s, const taylor_row *row, const output *o)
 {
-    char path[1024];
+    char path[PATH_BYTES];
     mpm_fault fault;
     mpm_io_csv t;
     mpm_real value[3];
@@ -61,7 +61,7 @@ static int write_profile(const taylor *s, const taylor_row *row, const output *o
 static int write_summary(const taylor *s, const taylor_result *r, const output *o, const option *options, int n)
 {
     const mpm_world *w = &s->world;
-    char path[1024];
+    char path[PATH_BYTES];
     mpm_fault fault;
     mpm_io_json j;
     mpm_io_json_begin(&j, file_in(o->folder, "summary.json", path, sizeof path), &fault);

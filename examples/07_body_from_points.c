@@ -11,7 +11,7 @@
 #include <stdio.h>
 
 enum { MOST = 1000 };
-static const double pi = 3.14159265358979323846, density = 1000;
+static const double pi = (double)MPM_PI, density = 1000;
 
 /* ---- inside(x): a torus about the z axis --------------------------------------------------------- */
 

@@ -24,7 +24,8 @@ static mpm_real path(const mpm_world *w)
     return (mpm_real)(t < 1 ? -depth / stop * (1 - cos(2 * (double)MPM_PI * t)) : 0);
 }
 
-/* Gives the nodes of a body up to a height the velocity v along z, and returns the force that takes [uN]. */
+/* Gives the nodes of a body up to a height the velocity v along z, and returns the force that takes [uN]. A layer that
+   moves along with what it drives is mpm_grip of mpm_measure.h. */
 static double drive(mpm_world *w, int body, double below, mpm_real v)
 {
     double force = 0;

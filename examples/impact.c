@@ -47,54 +47,53 @@ static int write_picture(const impact *s, const impact_case *c, output *o)
     return output_png(o, &p, "impact.png");
 }
 
-static int write_summary(const impact *s, const impact_case *c, const output *o, const option *options, int n)
+static int write_summary(const impact *s, const impact_result *r, const output *o, const option *options, int n)
 {
-    const impact_result r = impact_measure(s, c);
     const mpm_world *w = &s->world;
     const double start = s->start.kinetic, cpu = o->cpu;
     char path[PATH_BYTES];
     mpm_fault fault;
     mpm_io_json j;
     mpm_io_json_begin(&j, file_in(o->folder, "summary.json", path, sizeof path), &fault);
-    mpm_io_json_number(&j, "pbcp_percent", r.bond.pbcp);
-    mpm_io_json_number(&j, "pbcp_particle_percent", r.particle_bond.pbcp);
-    mpm_io_json_number(&j, "abp", r.bond.abp);
-    mpm_io_json_integer(&j, "contacted_points", r.bond.contacted);
-    mpm_io_json_integer(&j, "bonded_points", r.bond.bonded);
+    mpm_io_json_number(&j, "pbcp_percent", r->bond.pbcp);
+    mpm_io_json_number(&j, "pbcp_particle_percent", r->particle_bond.pbcp);
+    mpm_io_json_number(&j, "abp", r->bond.abp);
+    mpm_io_json_integer(&j, "contacted_points", r->bond.contacted);
+    mpm_io_json_integer(&j, "bonded_points", r->bond.bonded);
     mpm_io_json_integer(&j, "held_pairs", w->held);
-    mpm_io_json_number(&j, "v_rest_filtered_m_s", r.rebound.filtered);
-    mpm_io_json_number(&j, "v_rest_mean_m_s", r.rebound.mean);
-    mpm_io_json_number(&j, "v_rest_filtered_relative_m_s", r.filtered_relative);
-    mpm_io_json_number(&j, "v_rest_relative_m_s", r.relative);
-    mpm_io_json_number(&j, "v_noise_m_s", r.rebound.noise);
-    mpm_io_json_number(&j, "v_tangential_m_s", r.tangential);
-    mpm_io_json_number(&j, "substrate_drift_m_s", r.substrate_drift);
-    mpm_io_json_number(&j, "restitution_ratio", r.restitution);
-    mpm_io_json_number(&j, "flattening", r.flattening);
-    mpm_io_json_number(&j, "crater_depth_um", r.crater);
-    mpm_io_json_number(&j, "contact_area_um2", r.contact_area);
-    mpm_io_json_number(&j, "bonded_area_um2", r.bonded_area);
-    mpm_io_json_number(&j, "ejected_mass_fraction", r.ejected_fraction);
-    mpm_io_json_number(&j, "eps_mean", r.particle.plastic_strain_mean);
-    mpm_io_json_number(&j, "plastic_energy_density_mean_MPa", r.particle.plastic_work_mean);
-    mpm_io_json_number(&j, "temperature_max_K", r.all.temperature_max);
-    mpm_io_json_integer(&j, "points", r.all.points);
-    mpm_io_json_integer(&j, "ejected_points", r.rebound.ejected);
+    mpm_io_json_number(&j, "v_rest_filtered_m_s", r->rebound.filtered);
+    mpm_io_json_number(&j, "v_rest_mean_m_s", r->rebound.mean);
+    mpm_io_json_number(&j, "v_rest_filtered_relative_m_s", r->filtered_relative);
+    mpm_io_json_number(&j, "v_rest_relative_m_s", r->relative);
+    mpm_io_json_number(&j, "v_noise_m_s", r->rebound.noise);
+    mpm_io_json_number(&j, "v_tangential_m_s", r->tangential);
+    mpm_io_json_number(&j, "substrate_drift_m_s", r->substrate_drift);
+    mpm_io_json_number(&j, "restitution_ratio", r->restitution);
+    mpm_io_json_number(&j, "flattening", r->flattening);
+    mpm_io_json_number(&j, "crater_depth_um", r->crater);
+    mpm_io_json_number(&j, "contact_area_um2", r->contact_area);
+    mpm_io_json_number(&j, "bonded_area_um2", r->bonded_area);
+    mpm_io_json_number(&j, "ejected_mass_fraction", r->ejected_fraction);
+    mpm_io_json_number(&j, "eps_mean", r->particle.plastic_strain_mean);
+    mpm_io_json_number(&j, "plastic_energy_density_mean_MPa", r->particle.plastic_work_mean);
+    mpm_io_json_number(&j, "temperature_max_K", r->all.temperature_max);
+    mpm_io_json_integer(&j, "points", r->all.points);
+    mpm_io_json_integer(&j, "ejected_points", r->rebound.ejected);
     mpm_io_json_integer(&j, "retired_points", w->retired);
     mpm_io_json_integer(&j, "steps", w->steps);
     mpm_io_json_number(&j, "dt_ns", (double)s->dt * 1e3);
     mpm_io_json_number(&j, "time_ns", (double)w->time * 1e3);
     mpm_io_json_number(&j, "cpu_seconds", cpu);
-    mpm_io_json_number(&j, "point_steps_per_second", cpu > 0 ? (double)w->steps * (double)r.all.points / cpu : 0);
-    mpm_io_json_number(&j, "bytes_per_point", (double)mpm_bytes_used(w) / (double)r.all.points);
-    mpm_io_json_number(&j, "mass_error", r.mass_error);
-    mpm_io_json_number(&j, "momentum_error", r.momentum_error);
-    mpm_io_json_number(&j, "energy_error", r.energy_error);
-    mpm_io_json_number(&j, "energy_unaccounted", r.energy_unaccounted);
-    mpm_io_json_number(&j, "energy_kinetic_fraction", case_share(r.all.kinetic, start));
-    mpm_io_json_number(&j, "energy_plastic_fraction", case_share(r.all.plastic, start));
+    mpm_io_json_number(&j, "point_steps_per_second", cpu > 0 ? (double)w->steps * (double)r->all.points / cpu : 0);
+    mpm_io_json_number(&j, "bytes_per_point", (double)mpm_bytes_used(w) / (double)r->all.points);
+    mpm_io_json_number(&j, "mass_error", r->mass_error);
+    mpm_io_json_number(&j, "momentum_error", r->momentum_error);
+    mpm_io_json_number(&j, "energy_error", r->energy_error);
+    mpm_io_json_number(&j, "energy_unaccounted", r->energy_unaccounted);
+    mpm_io_json_number(&j, "energy_kinetic_fraction", case_share(r->all.kinetic, start));
+    mpm_io_json_number(&j, "energy_plastic_fraction", case_share(r->all.plastic, start));
     mpm_io_json_number(&j, "energy_elastic_fraction",
-                       case_share(r.all.internal - s->start.internal - r.all.plastic, start));
+                       case_share(r->all.internal - s->start.internal - r->all.plastic, start));
     mpm_io_json_number(&j, "energy_absorbed_fraction", case_share(w->ledger.absorbed, start));
     mpm_io_json_number(&j, "energy_contact_fraction", case_share(w->ledger.contact, start));
     mpm_io_json_number(&j, "energy_bond_fraction", case_share(w->ledger.hold, start));
@@ -108,46 +107,45 @@ static int write_summary(const impact *s, const impact_case *c, const output *o,
     return 1;
 }
 
-static void print_table(const impact *s, const impact_case *c, double cpu)
+static void print_table(const impact *s, const impact_case *c, const impact_result *r, double cpu)
 {
-    const impact_result r = impact_measure(s, c);
     const mpm_world *w = &s->world;
     const double start = s->start.kinetic;
-    const int stays = fabs(r.relative) <= 5 && w->held > 0;
+    const int stays = fabs(r->relative) <= 5 && w->held > 0;
     char name[64];
     printf("\n  %s, %g um at %g m/s after %.4g ns: %s\n\n", metals(s, name, sizeof name), c->diameter, c->velocity,
            (double)w->time * 1e3, stays ? "stays" : "rebounds");
-    printf("  rebound velocity, mean          %10.3f m/s\n", r.rebound.mean);
-    printf("  rebound velocity, |v| <= 60 m/s %10.3f m/s  (%.4f of the impact velocity)\n", r.rebound.filtered,
-           r.restitution);
-    printf("  velocity noise in the particle  %10.3f m/s\n", r.rebound.noise);
+    printf("  rebound velocity, mean          %10.3f m/s\n", r->rebound.mean);
+    printf("  rebound velocity, |v| <= 60 m/s %10.3f m/s  (%.4f of the impact velocity)\n", r->rebound.filtered,
+           r->restitution);
+    printf("  velocity noise in the particle  %10.3f m/s\n", r->rebound.noise);
     if (fabs(c->angle) > 0)
-        printf("  tangential velocity, mean       %10.3f m/s\n", r.tangential);
-    printf("  substrate drift                 %10.3f m/s\n", r.substrate_drift);
-    printf("  PBCP                            %10.3f %%    (%ld of %ld contacted points)\n", r.bond.pbcp,
-           r.bond.bonded, r.bond.contacted);
-    printf("  ABP                             %10.4f\n", r.bond.abp);
+        printf("  tangential velocity, mean       %10.3f m/s\n", r->tangential);
+    printf("  substrate drift                 %10.3f m/s\n", r->substrate_drift);
+    printf("  PBCP                            %10.3f %%    (%ld of %ld contacted points)\n", r->bond.pbcp,
+           r->bond.bonded, r->bond.contacted);
+    printf("  ABP                             %10.4f\n", r->bond.abp);
     printf("  node pairs held by the bond     %10ld\n", w->held);
-    printf("  mean plastic strain             %10.4f\n", r.particle.plastic_strain_mean);
-    printf("  mean plastic energy density     %10.2f MPa\n", r.particle.plastic_work_mean);
-    printf("  flattening                      %10.4f     crater %.3f um deep\n", r.flattening, r.crater);
-    printf("  area of the particle, contact   %10.3f um2, bonded %.3f um2\n", r.contact_area, r.bonded_area);
-    printf("  highest temperature             %10.1f K\n", r.all.temperature_max);
-    printf("  points ejected, retired         %10ld, %ld of %ld\n", r.rebound.ejected, w->retired, r.all.points);
+    printf("  mean plastic strain             %10.4f\n", r->particle.plastic_strain_mean);
+    printf("  mean plastic energy density     %10.2f MPa\n", r->particle.plastic_work_mean);
+    printf("  flattening                      %10.4f     crater %.3f um deep\n", r->flattening, r->crater);
+    printf("  area of the particle, contact   %10.3f um2, bonded %.3f um2\n", r->contact_area, r->bonded_area);
+    printf("  highest temperature             %10.1f K\n", r->all.temperature_max);
+    printf("  points ejected, retired         %10ld, %ld of %ld\n", r->rebound.ejected, w->retired, r->all.points);
     printf("  energy: kinetic                 %10.3f %%    plastic work %.3f %%, elastic %.3f %%\n",
-           100 * case_share(r.all.kinetic, start), 100 * case_share(r.all.plastic, start),
-           100 * case_share(r.all.internal - s->start.internal - r.all.plastic, start));
+           100 * case_share(r->all.kinetic, start), 100 * case_share(r->all.plastic, start),
+           100 * case_share(r->all.internal - s->start.internal - r->all.plastic, start));
     printf("  energy: absorbed by dampers     %10.3f %%    lost in contact %.3f %%, in the bond %.3f %%\n",
            100 * case_share(w->ledger.absorbed, start), 100 * case_share(w->ledger.contact, start),
            100 * case_share(w->ledger.hold, start));
-    printf("  errors: mass %.1e, momentum %.1e, energy unaccounted %.3f %%\n", r.mass_error, r.momentum_error,
-           100 * r.energy_unaccounted);
+    printf("  errors: mass %.1e, momentum %.1e, energy unaccounted %.3f %%\n", r->mass_error, r->momentum_error,
+           100 * r->energy_unaccounted);
     printf("  bond floor acted                %10lld times of %lld\n", (long long)w->tally[MPM_TALLY_BOND_FLOOR],
            (long long)w->tally[MPM_TALLY_BOND_GROWTH]);
     printf("  %lld steps of %.4g ps, %.1f s CPU, %.2f million point-steps/s, %.0f bytes per point\n",
            (long long)w->steps, (double)s->dt * 1e6, cpu,
-           cpu > 0 ? 1e-6 * (double)w->steps * (double)r.all.points / cpu : 0,
-           (double)mpm_bytes_used(w) / (double)r.all.points);
+           cpu > 0 ? 1e-6 * (double)w->steps * (double)r->all.points / cpu : 0,
+           (double)mpm_bytes_used(w) / (double)r->all.points);
 }
 
 /* Time integration: one call per phase. */
@@ -179,6 +177,17 @@ static int run(impact *s, const impact_case *c, output *o)
     return 1;
 }
 
+/* Everything that is written at the end. */
+static int finish(const impact *s, const impact_case *c, output *o, const option *options, int n)
+{
+    const impact_result r = impact_measure(s, c);
+    if (!write_summary(s, &r, o, options, n) || (o->frames > 0 && !write_picture(s, c, o))) return 0;
+    if (o->quiet) return 1;
+    print_table(s, c, &r, o->cpu);
+    printf("\n  %s/summary.json%s\n", o->folder, o->frames > 0 ? ", impact.png, impact.pvd" : "");
+    return 1;
+}
+
 static int carry_out(int argc, char **argv)
 {
     impact_case c = impact_case_default();
@@ -195,12 +204,7 @@ static int carry_out(int argc, char **argv)
     if (parsed) return parsed < 0 ? 1 : 0;
     if (!output_check(&o, message, sizeof message) || !impact_begin(&s, &c, message, sizeof message))
         return !complain(message);
-    ok = output_begin(&o) && run(&s, &c, &o) && write_summary(&s, &c, &o, options, n);
-    if (ok && o.frames > 0) ok = write_picture(&s, &c, &o);
-    if (ok && !o.quiet) {
-        print_table(&s, &c, o.cpu);
-        printf("\n  %s/summary.json%s\n", o.folder, o.frames > 0 ? ", impact.png, impact.pvd" : "");
-    }
+    ok = output_begin(&o) && run(&s, &c, &o) && finish(&s, &c, &o, options, n);
     mpm_free(&s.world);
     return ok ? 0 : 1;
 }

@@ -240,7 +240,7 @@ static inline mpm_bond impact_bond(const impact_case *c)
 /* Particle (its centre is left to be set) or substrate as a body of its material. */
 static inline mpm_body_desc impact_body(mpm_material *m, const impact_case *c, int body)
 {
-    const double radians = c->angle * 3.14159265358979323846 / 180;
+    const double radians = c->angle * (double)MPM_PI / 180;
     const double a = impact_half_width(c), h = impact_half_height(c);
     mpm_body_desc b = mpm_body_desc_default();
     b.spacing = (mpm_real)c->spacing;
@@ -324,7 +324,8 @@ typedef struct impact_result {
     mpm_totals particle, substrate, all;
     double restitution;                                /* filtered rebound / impact speed */
     double substrate_drift;                            /* mean v_z of the substrate */
-    double relative, filtered_relative;                /* rebound less that drift */
+    double relative, filtered_relative;                /* rebound less that drift; filtered as seen from the ground,
+                                                          as source A does: mpm_rebound_from filters in its frame */
     double tangential;                                 /* mean v_x of the particle */
     double flattening;                                 /* see mpm_splat; of the points within 60 m/s of the mean:
                                                           ejected ones fly far */

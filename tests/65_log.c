@@ -107,6 +107,7 @@ int main(void)
     fflush(stderr);
     CHECK_EQUAL("pictures that cannot be written", pictures(&s), -1);
     fflush(stderr);
-    CHECK_TRUE("... are said to be so", strstr(text_in(SAID, said, sizeof said), LOG "/nowhere/spray_b8.png: ") != NULL);
+    text_in(SAID, said, sizeof said);
+    CHECK_TRUE("... are said to be so", strstr(said, LOG "/nowhere/spray_b8.png: ") != NULL);
     return check_end();
 }

@@ -58,7 +58,7 @@ static inline double particles_extent(const particles_case *q)
 static inline int particles_scatter(particles_case *q, double spread, double height, double apart, double drift,
                                     long seed)
 {
-    const double pi = 3.14159265358979323846;
+    const double pi = (double)MPM_PI;
     uint64_t state = (uint64_t)seed;
     long k, other, tries = 0;
     for (k = 0; k < q->count; k++) {
@@ -87,7 +87,7 @@ static inline int particles_scatter(particles_case *q, double spread, double hei
    with a message. Test: 63_particles. */
 static inline int particles_place(particles_case *q, double spread, double height, long seed, char *message, size_t n)
 {
-    const double apart = particles_extent(q) + q->base.cell, tilt = q->base.angle * 3.14159265358979323846 / 180;
+    const double apart = particles_extent(q) + q->base.cell, tilt = q->base.angle * (double)MPM_PI / 180;
     const double down = q->base.velocity * cos(tilt), drift = tan(tilt);
     double least = HUGE_VAL;
     long k;
@@ -428,15 +428,15 @@ static inline int particles_whole(const particles_case *q, const char *summary)
 }
 
 /* Whether the folder holds this very scene, finished: version, number type and options in its summary, the centres
-   in its table. */
-static inline int particles_finished(const particles_case *q)
+   in its table; *frames: of that run. */
+static inline int particles_kept(const particles_case *q, long *frames)
 {
     static char text[200000];
     impact_case base = q->base, usual = impact_case_default();
     option o[IMPACT_OPTIONS], plain[IMPACT_OPTIONS];
     int n = impact_options(&base, o), plain_n = impact_options(&usual, plain), a;
     char path[PATH_BYTES], *row;
-    const char *count;
+    const char *count, *pictures;
     long k;
     option_drop(o, &n, "gap"); /* by the places of the particles */
     option_drop(plain, &plain_n, "gap");
@@ -445,6 +445,8 @@ static inline int particles_finished(const particles_case *q)
     if (!count || strtol(count, NULL, 10) != q->count || !particles_same_build(text) ||
         !options_match(text, o, plain, n) || !particles_whole(q, text))
         return 0;
+    pictures = json_value(text, "frames");
+    *frames = pictures ? strtol(pictures, NULL, 10) : -1;
     text_in(file_in(q->out.folder, "particles.csv", path, sizeof path), text, sizeof text);
     row = strstr(text, "height_um\n"); /* ends the line of the names */
     for (k = 0; k < q->count; k++) {
@@ -458,16 +460,17 @@ static inline int particles_finished(const particles_case *q)
     return 1;
 }
 
+static inline int particles_finished(const particles_case *q)
+{
+    long frames;
+    return particles_kept(q, &frames);
+}
+
 /* The same, with as many frames as wanted: then says so. Test: 63_particles. */
 static inline int particles_done(const particles_case *q)
 {
-    static char text[200000];
-    char path[PATH_BYTES];
-    const char *frames;
-    if (!particles_finished(q)) return 0;
-    text_in(file_in(q->out.folder, "summary.json", path, sizeof path), text, sizeof text);
-    frames = json_value(text, "frames");
-    if (q->out.frames > 0 && (!frames || strtol(frames, NULL, 10) != q->out.frames)) return 0;
+    long frames;
+    if (!particles_kept(q, &frames) || (q->out.frames > 0 && q->out.frames != frames)) return 0;
     printf("%s holds this scene, finished: delete the folder to run it again\n", q->out.folder);
     return 1;
 }

@@ -2,9 +2,9 @@
    Version 0.2.0. SPDX-License-Identifier: MIT
 
    DO THIS
-     #define MPM_IMPLEMENTATION in ONE file, then include "mpm_bond.h" there: it brings mpm.h with it. The same line
-     without the macro everywhere else. Put mpm_bond_grow and mpm_bond_nodes into your loop, between mpm_contact_find and
-     mpm_contact_apply; or call mpm_bond_step. Link with -lm.
+     #define MPM_IMPLEMENTATION in ONE file, then include "mpm_bond.h" there: it brings mpm.h with it. The same
+     line without the macro everywhere else. Put mpm_bond_grow and mpm_bond_nodes into your loop, between
+     mpm_contact_find and mpm_contact_apply; or call mpm_bond_step. Link with -lm.
 
      A second model of bonding: bond.rule = MPM_BOND_USER with your bond.grow, which says by how much D of a
      point grew; and your bond.decide, which says whether a pair of bodies holds at a node.

@@ -124,8 +124,8 @@ static void three_bodies(void)
             for (order = 0; order < 3; order++) foil((mpm_contact_law)law, (mpm_basis)basis, order, v[order]);
             for (order = 1; order < 3; order++)
                 for (k = 0; k < 3; k++) apart = check_worst(apart, fabs(v[order][k] - v[0][k]) / 100);
-            printf("# law %d, %s: blocks at %.3f and %.3f m/s, foil %.2g\n", law, scene_basis((mpm_basis)basis), v[0][0],
-                   v[0][2], v[0][1]);
+            printf("# law %d, %s: blocks at %.3f and %.3f m/s, foil %.2g\n", law, scene_basis((mpm_basis)basis),
+                   v[0][0], v[0][2], v[0][1]);
             CHECK_NEAR("three bodies at a node: whatever their numbers", apart, 0, 1e7 * eps);
             CHECK_NEAR("... the foil stays in the middle", v[0][1] / 100, 0, 1e6 * eps);
             CHECK_NEAR("... and the blocks are mirror images", (v[0][0] + v[0][2]) / 100, 0, 1e6 * eps);

@@ -123,8 +123,7 @@ static void rules(fuzz *f, scene *s)
 
 static int pulls(fuzz *f, scene *s, mpm_pull *p)
 {
-    mpm_pull_desc d;
-    memset(&d, 0, sizeof d);
+    mpm_pull_desc d = mpm_pull_desc_default();
     d.lower = 1;
     d.above = 2;
     d.below = -1;

@@ -84,7 +84,7 @@ verify: $(VERIFY:=.md) ## the verification ladder again: writes docs/verificatio
 	@grep -h '^[0-9]* rows' docs/verification.md
 
 # The runs behind docs/reproduction.md and the README, and the numbers quoted there.
-RIM = --geometry axisymmetric --cell 0.7 --spacing 0.175 --dt-factor 0.2 --frames 1 --quiet
+RIM = --material al-thesis --geometry axisymmetric --cell 0.7 --spacing 0.175 --dt-factor 0.2 --frames 1 --quiet
 impacts: build/impact ## the impacts of docs/reproduction.md: bonded, unbonded, whole model, rim jet (6 minutes)
 	build/impact --frames 0 --quiet --out build/bonded
 	build/impact --frames 0 --quiet --out build/unbonded --bond none

@@ -30,7 +30,7 @@
      choices                   the lists MPM_STRENGTH_LIST, MPM_SHEAR_LIST, MPM_MELT_LIST, MPM_EOS_LIST, ...
      parameters                mpm_material; laws of your own: mpm_strength_fn, mpm_eos_fn
      presets                   mpm_material_default, _preset, _model, _preset_count, _preset_name, _check
-     the laws, one point       _flow, _flow_stress, _shear_modulus, _melt_temperature,
+     the laws, one point       _flow, _flow_stress, _shear_modulus, _melt_temperature, _melting_point, _melts_at,
                                _attempt_rate, _pressure, _hugoniot_pressure, _wave_speeds
      the update, a block       mpm_material_stress
 
@@ -44,6 +44,8 @@
      [PTW] Preston, Tonks, Wallace, J. Appl. Phys. 93 (2003) 211
      [S]   Steinberg, Equation of state and strength properties of selected materials,
            UCRL-MA-106439 (1991, change 1, 1996)
+     [H]   melting points of handbooks: fixed points of the ITS-90 (Al, Cu, Zn), CRC Handbook of Chemistry and Physics;
+           alloys: their liquidus, from data sheets of the grade
      [JC]  Johnson, Cook, 7th Int. Symp. Ballistics (1983) 541; Eng. Fract. Mech. 21 (1985) 31
      [C]   computed here from numbers of the other sources
      [M]   commonly used, but its printed source was not seen: check before you rely on it */
@@ -67,6 +69,8 @@
 #define mpm_material_flow_stress mpm_material_flow_stress_f32
 #define mpm_material_shear_modulus mpm_material_shear_modulus_f32
 #define mpm_material_melt_temperature mpm_material_melt_temperature_f32
+#define mpm_material_melting_point mpm_material_melting_point_f32
+#define mpm_material_melts_at mpm_material_melts_at_f32
 #define mpm_material_attempt_rate mpm_material_attempt_rate_f32
 #define mpm_material_pressure mpm_material_pressure_f32
 #define mpm_material_hugoniot_pressure mpm_material_hugoniot_pressure_f32
@@ -255,7 +259,7 @@ typedef struct mpm_material {
     mpm_real shear_a, shear_b;     /* A [1/stress] and B [1/K] of SCG */
     mpm_real shear_floor;          /* mu never falls below this fraction of shear_modulus, > 0 */
 
-    mpm_real melt_temperature;     /* T_m0 [K] */
+    mpm_real melt_temperature;     /* T_m0 [K]: that at rho0. Hot metal has less, see mpm_material_melting_point */
     mpm_real melt_a;               /* a of A 2.9; its Gamma0 is gruneisen */
 
     mpm_real sound_speed;          /* c0 of Us = c0 + s up [velocity] */
@@ -337,6 +341,19 @@ MPM_API mpm_real mpm_material_shear_modulus(const mpm_material *m, const mpm_mat
    T_m0 exp(2 a (1 - 1/eta)) eta^(2 (Gamma0 - a - 1/3)) (A 2.9).
    Test: 10_material "published and precomputed numbers". */
 MPM_API mpm_real mpm_material_melt_temperature(const mpm_material *m, mpm_real density);
+
+/* The temperature [K] at which it melts at zero pressure, heated from `temperature` at rho0: where T = T_m(rho) and
+   0 = p(rho, Cp (T - temperature)), rho = rho0 (1 - Gamma0 Cp (T - temperature)/c0^2). That is below T_m0: aluminium
+   with 933.5 K at rho0 melts at 835 K. rho stays at rho0 below `temperature`, and here with any equation of state but
+   Mie-Grueneisen; only SCG melting looks at it. Infinite where nothing melts. Test: 10_material "melting points". */
+MPM_API mpm_real mpm_material_melting_point(const mpm_material *m);
+
+/* Sets T_m0 such that it melts at T [K] at zero pressure: mpm_material_melting_point is then T. The presets do so with
+   the melting points of handbooks; call it again after a change of temperature, specific heat, equation of state or
+   melt_a. Returns MPM_OK; MPM_ERR_NAN or MPM_ERR_ARGUMENT for a T that is not > 0 ("melting point"), or so high that
+   nothing is left there of the density or of T_m ("melt_temperature"); *m is then unchanged.
+   Test: 10_material "melting points". */
+MPM_API mpm_status mpm_material_melts_at(mpm_material *m, mpm_real T, mpm_fault *fault);
 
 /* xidot = (4 pi rho/(3 M))^(1/3) (mu/rho)^(1/2)/2 [1/time], the rate at which atoms attempt to pass an
    obstacle (A 2.8). PTW only. Test: 10_material "published and precomputed numbers". */
@@ -838,7 +855,7 @@ static inline void mpm__ptw_bound_scg(const mpm_material *m, mpm__ptw_bounds *b)
    c0 = 0: no Hugoniot was found; the equation of state is then the linear one. */
 typedef struct mpm__ptw_metal {
     const char *name, *model;                /* preferred strength */
-    double density, heat;                    /* kg/m^3, J/(kg K) */
+    double density, heat, melt;              /* kg/m^3, J/(kg K), melting point at p = 0 [K] [H] */
     double young, poisson;                   /* Pa, 1 */
     double sound, slope, gruneisen;          /* m/s, 1, 1 */
 } mpm__ptw_metal;
@@ -846,40 +863,44 @@ typedef struct mpm__ptw_metal {
 static const mpm__ptw_metal mpm__ptw_metals[] = {
     /* rho, Cp, E, nu, c0, s, Gamma0 of the Al of source A, which prints none of the last three:
        the values are those of the shock data for 1100-O [S] */
-    {"al", "ptw", 2700, 900, 70e9, 0.33, 5386, 1.339, 1.97},
-    {"al1100", "scg", 2707, 884, 0, 0, 5386, 1.339, 1.97},        /* [S] */
-    {"al6061-t6", "scg", 2703, 885, 0, 0, 5240, 1.40, 1.97},      /* [S] */
-    {"al7075-t6", "scg", 2803, 848, 0, 0, 5200, 1.36, 2.20},      /* [S] */
-    {"cu", "ptw", 8930, 383, 0, 0, 3940, 1.489, 2.02},            /* [S], OFHC half hard */
-    {"ni", "scg", 8900, 440, 0, 0, 4650, 1.445, 1.93},            /* [S]; Cp [M] */
+    {"al", "ptw", 2700, 900, 933.5, 70e9, 0.33, 5386, 1.339, 1.97},
+    {"al-thesis", "ptw", 2700, 900, 933.5, 70e9, 0.33, 5386, 1.339, 1.97}, /* ... melting at 933.5 K at rho0 */
+    {"al1100", "scg", 2707, 884, 930, 0, 0, 5386, 1.339, 1.97},        /* [S] */
+    {"al6061-t6", "scg", 2703, 885, 925, 0, 0, 5240, 1.40, 1.97},      /* [S] */
+    {"al7075-t6", "scg", 2803, 848, 908, 0, 0, 5200, 1.36, 2.20},      /* [S] */
+    {"cu", "ptw", 8930, 383, 1357.8, 0, 0, 3940, 1.489, 2.02},         /* [S], OFHC half hard */
+    {"ni", "scg", 8900, 440, 1728, 0, 0, 4650, 1.445, 1.93},           /* [S]; Cp [M] */
     /* [S]; its Hugoniot has further terms (S2 = -5.138), so this line is for mu up to about 0.05 */
-    {"ti", "scg", 4510, 500, 0, 0, 5020, 1.536, 1.23},
-    {"ti-6al-4v", "scg", 4419, 525, 0, 0, 5130, 1.028, 1.23},     /* [S] */
-    {"ta", "ptw", 16690, 135, 0, 0, 3410, 1.20, 1.67},            /* [S] */
-    {"zn", "scg", 7139, 389, 0, 0, 3030, 1.55, 2.24},             /* [S] */
-    {"304", "ptw", 7900, 500, 193e9, 0.29, 0, 0, 0},              /* data sheets of the grade */
-    {"4340", "jc", 7830, 477, 200e9, 0.29, 0, 0, 0}               /* [JC] and data sheets */
+    {"ti", "scg", 4510, 500, 1941, 0, 0, 5020, 1.536, 1.23},
+    {"ti-6al-4v", "scg", 4419, 525, 1933, 0, 0, 5130, 1.028, 1.23},    /* [S] */
+    {"ta", "ptw", 16690, 135, 3290, 0, 0, 3410, 1.20, 1.67},           /* [S] */
+    {"zn", "scg", 7139, 389, 692.7, 0, 0, 3030, 1.55, 2.24},           /* [S] */
+    {"304", "ptw", 7900, 500, 1673, 193e9, 0.29, 0, 0, 0},             /* data sheets of the grade */
+    {"4340", "jc", 7830, 477, 1793, 200e9, 0.29, 0, 0, 0}              /* [JC] and data sheets */
 };
 
-/* Steinberg-Cochran-Guinan: shear modulus, melting and strength. */
+/* Steinberg-Cochran-Guinan: shear modulus, melting and strength. T_m0, the melting temperature at rho0, is made of
+   the metal's melting point. [S] prints fits of T_m0 that belong to its own expansion: 1220 (Al), 1790 (Cu), 2330 (Ni),
+   2260 (Ti), 2110 (Ti-6Al-4V), 4340 (Ta), 900 K (Zn); with the equation of state here they melt 7 to 13 % too hot at
+   p = 0 (Ti-6Al-4V: 1 %). */
 typedef struct mpm__ptw_set_scg {
     const char *name;
     double shear, a, b;          /* G0 [Pa], A [1/Pa], B [1/K] */
-    double melt, melt_a;         /* T_m0 [K] of the fit at rho0, a */
+    double melt_a;               /* a */
     double y0, ymax, beta, n;    /* [Pa, Pa, 1, 1] */
 } mpm__ptw_set_scg;
 
 static const mpm__ptw_set_scg mpm__ptw_sets_scg[] = {
     /* all [S]; y0 of al1100 is [M] (0.04 GPa; a deck that circulates has ten times that) */
-    {"al1100", 27.1e9, 6.52e-11, 6.16e-4, 1220, 1.5, 0.04e9, 0.48e9, 400, 0.27},
-    {"al6061-t6", 27.6e9, 6.52e-11, 6.16e-4, 1220, 1.5, 0.29e9, 0.68e9, 125, 0.10},
-    {"al7075-t6", 26.7e9, 6.52e-11, 6.16e-4, 1220, 1.7, 0.42e9, 0.81e9, 965, 0.10},
-    {"cu", 47.7e9, 2.83e-11, 3.77e-4, 1790, 1.5, 0.12e9, 0.64e9, 36, 0.45},
-    {"ni", 85.5e9, 1.63e-11, 3.26e-4, 2330, 1.4, 0.14e9, 1.20e9, 46, 0.53},
-    {"ti", 43.4e9, 1.15e-11, 6.22e-4, 2260, 1.0, 0.71e9, 1.45e9, 780, 0.065},
-    {"ti-6al-4v", 41.9e9, 1.15e-11, 6.44e-4, 2110, 1.0, 1.33e9, 2.12e9, 12, 0.10},
-    {"ta", 69.0e9, 1.45e-11, 1.30e-4, 4340, 1.3, 0.77e9, 1.10e9, 10, 0.1},
-    {"zn", 39.5e9, 5.95e-11, 7.60e-4, 900, 1.7, 0.15e9, 0.92e9, 100, 0.20}
+    {"al1100", 27.1e9, 6.52e-11, 6.16e-4, 1.5, 0.04e9, 0.48e9, 400, 0.27},
+    {"al6061-t6", 27.6e9, 6.52e-11, 6.16e-4, 1.5, 0.29e9, 0.68e9, 125, 0.10},
+    {"al7075-t6", 26.7e9, 6.52e-11, 6.16e-4, 1.7, 0.42e9, 0.81e9, 965, 0.10},
+    {"cu", 47.7e9, 2.83e-11, 3.77e-4, 1.5, 0.12e9, 0.64e9, 36, 0.45},
+    {"ni", 85.5e9, 1.63e-11, 3.26e-4, 1.4, 0.14e9, 1.20e9, 46, 0.53},
+    {"ti", 43.4e9, 1.15e-11, 6.22e-4, 1.0, 0.71e9, 1.45e9, 780, 0.065},
+    {"ti-6al-4v", 41.9e9, 1.15e-11, 6.44e-4, 1.0, 1.33e9, 2.12e9, 12, 0.10},
+    {"ta", 69.0e9, 1.45e-11, 1.30e-4, 1.3, 0.77e9, 1.10e9, 10, 0.1},
+    {"zn", 39.5e9, 5.95e-11, 7.60e-4, 1.7, 0.15e9, 0.92e9, 100, 0.20}
 };
 
 /* Johnson-Cook; reference rate 1/s, reference temperature 298 K. */
@@ -906,20 +927,24 @@ typedef struct mpm__ptw_set_ptw {
     mpm_shear shear;             /* MTS: mu0, D [Pa], T0 [K]; SCG: the table above; constant: mu0 */
     double mu0, mts_d, mts_t;
     mpm_melt melt;
-    double melt0, melt_a;        /* [K], 1 */
+    double melt0, melt_a;        /* T_m0 [K], 0: made of the metal's melting point; 1 */
 } mpm__ptw_set_ptw;
 
 static const mpm__ptw_set_ptw mpm__ptw_sets_ptw[] = {
     /* [A] table 2.1. The table prints 4.48039e-23 kg per atom, which is grams: 26.98 u is
-       4.48039e-26 kg. T_m0: ambient melting point of Al; a: [S]. */
+       4.48039e-26 kg. a: [S]. */
     {"al", 0.01156, 3, 0.01489, 0.002819, 1.3, 2.04e-5, 0.0115, 0.002003, 0.0168, 0.2339, 0.2034,
+     4.48039e-26, MPM_SHEAR_MTS, 28.8e9, 3.44e9, 215, MPM_MELT_SCG, 0, 1.5},
+    /* ... with which source A's results were reproduced: the melting point at p = 0 taken as T_m0, so that it
+       melts at 835 K there. Source A prints no T_m0. */
+    {"al-thesis", 0.01156, 3, 0.01489, 0.002819, 1.3, 2.04e-5, 0.0115, 0.002003, 0.0168, 0.2339, 0.2034,
      4.48039e-26, MPM_SHEAR_MTS, 28.8e9, 3.44e9, 215, MPM_MELT_SCG, 933.5, 1.5},
-    /* [PTW]; shear modulus: MTS fit of Cu in use with it; melting [S]; 63.546 u */
+    /* [PTW]; shear modulus: MTS fit of Cu in use with it; a [S]; 63.546 u */
     {"cu", 0.025, 2, 0.0085, 0.00055, 0.11, 1e-5, 1e-4, 1e-4, 0.094, 0.575, 0.25,
-     1.055206e-25, MPM_SHEAR_MTS, 51.3e9, 3.0e9, 165, MPM_MELT_SCG, 1790, 1.5},
-    /* [PTW]; shear modulus and melting [S]; 180.948 u */
+     1.055206e-25, MPM_SHEAR_MTS, 51.3e9, 3.0e9, 165, MPM_MELT_SCG, 0, 1.5},
+    /* [PTW]; shear modulus and a [S]; 180.948 u */
     {"ta", 0.02, 0, 0.012, 0.00325, 0.6, 4e-5, 0.01, 0.00125, 0.012, 0.4, 0.23,
-     3.004712e-25, MPM_SHEAR_SCG, 0, 0, 0, MPM_MELT_SCG, 4340, 1.3},
+     3.004712e-25, MPM_SHEAR_SCG, 0, 0, 0, MPM_MELT_SCG, 0, 1.3},
     /* [PTW], which prints G0 = 89.5 GPa at T = 0 with a fall towards melting that was not seen; instead
        the room temperature shear modulus of data sheets, held constant; melting: solidus of 304; the
        atom is that of iron, 55.845 u */
@@ -1009,23 +1034,29 @@ static inline void mpm__ptw_use_shear_scg(mpm_material *m, const mpm__ptw_set_sc
     m->shear_b = (mpm_real)t->b;
 }
 
+/* Melting after A 2.9 with the metal's melting point at p = 0; m has its equation of state. */
+static inline int mpm__ptw_use_melt_scg(mpm_material *m, const char *metal, double a)
+{
+    const mpm__ptw_metal *t = MPM__PTW_FIND(mpm__ptw_metal, mpm__ptw_metals, metal);
+    m->melt = MPM_MELT_SCG;
+    m->melt_a = (mpm_real)a;
+    return t && mpm_material_melts_at(m, (mpm_real)t->melt, NULL) == MPM_OK;
+}
+
 static inline int mpm__ptw_use_scg(mpm_material *m, const char *metal)
 {
     const mpm__ptw_set_scg *t = MPM__PTW_FIND(mpm__ptw_set_scg, mpm__ptw_sets_scg, metal);
     if (!t) return 0;
     mpm__ptw_use_shear_scg(m, t);
-    m->melt = MPM_MELT_SCG;
-    m->melt_temperature = (mpm_real)t->melt;
-    m->melt_a = (mpm_real)t->melt_a;
     m->scg.y0 = mpm__ptw_stress_in(m, t->y0);
     m->scg.ymax = mpm__ptw_stress_in(m, t->ymax);
     m->scg.beta = (mpm_real)t->beta;
     m->scg.n = (mpm_real)t->n;
-    return 1;
+    return mpm__ptw_use_melt_scg(m, metal, t->melt_a);
 }
 
-/* The shear modulus and melting law that a set of PTW belongs to. */
-static inline void mpm__ptw_use_moduli_of(mpm_material *m, const mpm__ptw_set_ptw *t)
+/* The shear modulus and melting law that a set of PTW belongs to; 0: there is no such melting point. */
+static inline int mpm__ptw_use_moduli_of(mpm_material *m, const mpm__ptw_set_ptw *t)
 {
     m->shear = t->shear;
     m->shear_modulus = mpm__ptw_stress_in(m, t->mu0);
@@ -1036,14 +1067,14 @@ static inline void mpm__ptw_use_moduli_of(mpm_material *m, const mpm__ptw_set_pt
     m->melt = t->melt;
     m->melt_temperature = (mpm_real)t->melt0;
     m->melt_a = (mpm_real)t->melt_a;
+    return t->melt0 > 0 || mpm__ptw_use_melt_scg(m, t->name, t->melt_a);
 }
 
 static inline int mpm__ptw_use_ptw(mpm_material *m, const char *metal)
 {
     const mpm__ptw_set_ptw *t = MPM__PTW_FIND(mpm__ptw_set_ptw, mpm__ptw_sets_ptw, metal);
     mpm_ptw *c = &m->ptw;
-    if (!t) return 0;
-    mpm__ptw_use_moduli_of(m, t);
+    if (!t || !mpm__ptw_use_moduli_of(m, t)) return 0;
     c->theta = (mpm_real)t->theta;
     c->d = (mpm_real)t->d;
     c->s0 = (mpm_real)t->s0;
@@ -1283,6 +1314,41 @@ MPM_API mpm_real mpm_material_melt_temperature(const mpm_material *m, mpm_real d
     mpm_real eta = density / m->density;
     mpm__ptw_shared h = mpm__ptw_share(m);
     return mpm__ptw_melt(m, h.melt_exponent, mpm_log(eta), eta);
+}
+
+/* rho/rho0 at zero pressure after heating to T from `temperature`, 1 - Gamma0 Cp (T - temperature)/c0^2. */
+static inline mpm_real mpm__ptw_expanded(const mpm_material *m, mpm_real T)
+{
+    const mpm_real heat = m->specific_heat * mpm__ptw_max(T - m->temperature, 0);
+    return m->eos == MPM_EOS_MIE_GRUENEISEN ? 1 - m->gruneisen * heat / (m->sound_speed * m->sound_speed) : 1;
+}
+
+MPM_API mpm_real mpm_material_melting_point(const mpm_material *m)
+{
+    mpm_real low = m->temperature, high = m->melt_temperature;
+    int i;
+    if (m->melt != MPM_MELT_SCG || !(high > low)) return mpm_material_melt_temperature(m, m->density);
+    for (i = 0; i < 200; i++) { /* T - T_m grows with T */
+        const mpm_real T = low + (high - low) / 2, eta = mpm__ptw_expanded(m, T);
+        if (eta > 0 && T < mpm_material_melt_temperature(m, eta * m->density)) low = T;
+        else high = T;
+    }
+    return high;
+}
+
+MPM_API mpm_status mpm_material_melts_at(mpm_material *m, mpm_real T, mpm_fault *fault)
+{
+    const mpm_real eta = mpm__ptw_expanded(m, T);
+    mpm_material next = *m;
+    MPM__PTW_REQUIRE(mpm__ptw_positive("melting point", T, fault));
+    next.melt_temperature = 1;
+    if (m->melt == MPM_MELT_SCG && eta > 0)
+        next.melt_temperature = mpm_material_melt_temperature(&next, eta * m->density);
+    next.melt_temperature = eta > 0 ? T / next.melt_temperature : 0;
+    MPM__PTW_REQUIRE(mpm_want(next.melt_temperature > 0 && mpm_finite(next.melt_temperature), fault, "melt_temperature",
+                              next.melt_temperature, -1));
+    *m = next;
+    return MPM_OK;
 }
 
 MPM_API mpm_real mpm_material_attempt_rate(const mpm_material *m, const mpm_material_state *s)

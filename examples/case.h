@@ -4,8 +4,10 @@
 #define CASE_H
 
 #include "mpm_io.h"
+#include "mpm_ptw.h"
 #include "options.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -28,6 +30,16 @@ static inline int case_knows(const char *list, const char *name, const char *wor
     if (word_known(list, word)) return 1;
     snprintf(message, n, "--%s %s: not one of %.*s", name, word, words_shown(list), list);
     return 0;
+}
+
+/* A preset at another temperature than its own. Pressure and density start as at 298 K, without the energy of the heat:
+   it melts at the point of metal that was heated from there. */
+static inline void case_heat(mpm_material *m, double kelvin)
+{
+    const mpm_real point = mpm_material_melting_point(m);
+    if (!(fabs(kelvin - (double)m->temperature) > 0)) return;
+    m->temperature = (mpm_real)kelvin;
+    mpm_material_melts_at(m, point, NULL); /* refuses what never melts, and leaves it */
 }
 
 /* part / whole, and 0 of nothing. */

@@ -199,8 +199,8 @@ static inline mpm_desc impact_grid(const impact_case *c)
     return d;
 }
 
-/* The material of a body at its temperature. Heating softens; density and pressure start as at 298 K.
-   Returns 1, or 0 with a message. */
+/* The material of a body at its temperature. Heating softens; density and pressure start as at 298 K, and it melts
+   at the same point as metal that was heated from there. Returns 1, or 0 with a message. */
 static inline int impact_metal(mpm_material *m, const impact_case *c, int body, char *message, size_t n)
 {
     const mpm_units units = mpm_units_um_us_ng();
@@ -219,7 +219,7 @@ static inline int impact_metal(mpm_material *m, const impact_case *c, int body, 
         return 0;
     }
     m->mapping = (mpm_return_mapping)word_place(MPM_NAMES(MPM_RETURN_LIST), c->plasticity);
-    m->temperature = (mpm_real)kelvin;
+    case_heat(m, kelvin);
     return 1;
 }
 

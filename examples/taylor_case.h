@@ -101,7 +101,7 @@ static inline int taylor_material(mpm_material *material, const taylor_case *c, 
         snprintf(message, n, "--model %s: no published set for --material %s", c->model, c->material);
         return 0;
     }
-    material->temperature = (mpm_real)c->temperature;
+    case_heat(material, c->temperature);
     return 1;
 }
 

@@ -109,14 +109,85 @@ static void test_numbers(void)
 static void test_melting_table(void)
 {
     const char *names[] = {"al1100", "cu", "ti", "ta"};
-    const double melt[] = {1644.82, 2436.41, 2657.77, 5535.75};
+    const double published[] = {1220, 1790, 2260, 4340}, melt[] = {1644.82, 2436.41, 2657.77, 5535.75};
     int i;
     for (i = 0; i < 4; i++) {
         mpm_material m = preset(names[i], "scg");
+        m.melt_temperature = (mpm_real)published[i];
         CHECK_NEAR(names[i], mpm_material_melt_temperature(&m, (mpm_real)1.1 * m.density), melt[i], 0.006);
         CHECK_RELATIVE("at the reference density", mpm_material_melt_temperature(&m, m.density),
                        m.melt_temperature, 8 * (double)MPM_EPSILON);
     }
+}
+
+/* Zero pressure, heat alone, and the metal as the equation of state then has it: density and temperature at which its
+   strength goes, halved in here with nothing of the library's melting point but the laws. */
+static double melts(const mpm_material *m)
+{
+    double cold = (double)m->temperature, hot = 2 * (double)m->melt_temperature;
+    while (hot - cold > 0.01) {
+        const double T = (cold + hot) / 2, energy = (double)m->specific_heat * (T - (double)m->temperature);
+        double low = 0.5, high = 1.1;
+        int k;
+        for (k = 0; k < 60; k++) {
+            const double eta = (low + high) / 2;
+            mpm_real p = 0;
+            mpm_material_pressure(m, (mpm_real)(eta * (double)m->density), (mpm_real)energy, &p, NULL);
+            if (p < 0) low = eta;
+            else high = eta;
+        }
+        {
+            const mpm_material_state s = state(0.1, 1e6, T, high * (double)m->density, 0);
+            if (mpm_material_flow_stress(m, &s) > 0) cold = T;
+            else hot = T;
+        }
+    }
+    return hot;
+}
+
+static void test_melting_points(void)
+{
+    /* Solidus and liquidus of handbooks at p = 0; pure metals: the melting point, ITS-90 and CRC Handbook. */
+    static const struct { const char *name; double solidus, liquidus; } metal[] = {
+        {"al", 933.5, 933.5}, {"al1100", 916, 930}, {"al6061-t6", 855, 925}, {"al7075-t6", 750, 908},
+        {"cu", 1357.8, 1357.8}, {"ni", 1728, 1728}, {"ti", 1941, 1941}, {"ti-6al-4v", 1877, 1933},
+        {"ta", 3290, 3290}, {"zn", 692.7, 692.7}, {"304", 1673, 1723}, {"4340", 1700, 1773}};
+    static const char *const models[] = {"jc", "scg", "ptw"};
+    const mpm_units u = mpm_units_um_us_ng();
+    mpm_material m, n;
+    mpm_fault f;
+    size_t i, k;
+    for (i = 0; i < sizeof metal / sizeof *metal; i++)
+        for (k = 0; k < 3; k++) {
+            const double low = 0.98 * metal[i].solidus, high = 1.02 * metal[i].liquidus;
+            if (mpm_material_preset(&m, metal[i].name, &u, NULL) < 0) break;
+            if (mpm_material_model(&m, models[k], NULL) < 0) continue;
+            CHECK_NEAR(metal[i].name, melts(&m), (low + high) / 2, (high - low) / 2);
+            CHECK_RELATIVE("... and it says so", mpm_material_melting_point(&m), melts(&m), 1e-4);
+        }
+    m = preset("al-thesis", "ptw");
+    CHECK_NEAR("source A's results: 933.5 K at rho0", m.melt_temperature, 933.5, 1e-4);
+    CHECK_NEAR("... is 835 K at p = 0", melts(&m), 835, 1);
+    m = preset("al", "ptw");
+    CHECK_NEAR("al: at rho0", m.melt_temperature, 1066, 2);
+    n = m;
+    n.temperature = 600;
+    CHECK_TRUE("begun hot without the heat's energy: too high", melts(&n) > 970);
+    CHECK_EQUAL("... unless told", mpm_material_melts_at(&n, mpm_material_melting_point(&m), NULL), MPM_OK);
+    CHECK_NEAR("... as the cold one", melts(&n), (double)mpm_material_melting_point(&m), 0.1);
+    n = m;
+    m.eos = MPM_EOS_LINEAR;
+    CHECK_EQUAL("without expansion", mpm_material_melts_at(&m, 900, NULL), MPM_OK);
+    CHECK_RELATIVE("... at rho0", m.melt_temperature, 900, 8 * (double)MPM_EPSILON);
+    m = n;
+    CHECK_EQUAL("not a temperature", mpm_material_melts_at(&m, 0, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... by name", !strcmp(f.field, "melting point"));
+    CHECK_EQUAL("so hot that nothing is left", mpm_material_melts_at(&m, 20000, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... by name", !strcmp(f.field, "melt_temperature"));
+    CHECK_EQUAL("NaN", mpm_material_melts_at(&m, (mpm_real)NAN, NULL), MPM_ERR_NAN);
+    CHECK_TRUE("... the material as it was", m.melt_temperature == n.melt_temperature);
+    m = preset("al", "elastic");
+    CHECK_TRUE("what never melts", !mpm_finite(mpm_material_melting_point(&m)));
 }
 
 /* ---- limits ---------------------------------------------------------------------------------- */
@@ -170,9 +241,9 @@ static void test_temperature_limits(void)
     s.plastic_rate = 0;
     CHECK_TRUE("T = 0: y0 at any rate, bit for bit",
                mpm_material_flow_stress(&m, &s) == 2 * m.shear_modulus * m.ptw.y0);
-    s = state(0.1, 1e6, 933.5, 2700, 0);
+    s = state(0.1, 1e6, (double)m.melt_temperature, 2700, 0);
     CHECK_TRUE("at melting: no strength", mpm_material_flow_stress(&m, &s) == 0);
-    s.temperature = (mpm_real)933.4;
+    s.temperature = (mpm_real)0.9999 * m.melt_temperature;
     CHECK_TRUE("just below melting: strength", mpm_material_flow_stress(&m, &s) > 0);
     s = state(0.1, 1e6, 2500, 4000, 0);
     CHECK_RELATIVE("far beyond 1906 K: mu at its floor", mpm_material_shear_modulus(&m, &s),
@@ -437,7 +508,7 @@ static void test_presets(void)
             for (k = 1; k < 3; k++) differ += !(fabs(stress[k] / stress[0] - 1) <= TIGHT);
         }
     CHECK_EQUAL("every preset and model passes the check", bad, 0);
-    CHECK_EQUAL("number of published sets, in three unit systems", sets, 3 * 33);
+    CHECK_EQUAL("number of published sets, in three unit systems", sets, 3 * 35);
     CHECK_EQUAL("same stress in SI, um-us-ng and mm-ms-g", differ, 0);
     CHECK_TRUE("no name beyond the last",
                !mpm_material_preset_name(mpm_material_preset_count()) && !mpm_material_preset_name(-1));
@@ -541,6 +612,7 @@ int main(void)
     test_flow_stress_against_long_double();
     test_numbers();
     test_melting_table();
+    test_melting_points();
     test_rate_limits();
     test_temperature_limits();
     test_hardening_limits();

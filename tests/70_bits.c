@@ -101,23 +101,31 @@ static uint64_t run_impact(const impact_case *c, long steps)
     return hash;
 }
 
-/* The main job of examples/impact, to its end. */
+/* The impact of examples/impact with the aluminium that source A's results were reproduced with. */
+static impact_case source_a(void)
+{
+    impact_case c = impact_case_default();
+    c.material = "al-thesis";
+    return c;
+}
+
+/* ... to its end. */
 static uint64_t bits_default(void)
 {
-    const impact_case c = impact_case_default();
+    const impact_case c = source_a();
     return run_impact(&c, 1000000);
 }
 
 static uint64_t bits_default_early(void)
 {
-    const impact_case c = impact_case_default();
+    const impact_case c = source_a();
     return run_impact(&c, 400);
 }
 
 /* GIMP, normals by logistic regression, contact where the points touch, friction, three mirrors' worth of model. */
 static uint64_t bits_logistic(void)
 {
-    impact_case c = impact_case_default();
+    impact_case c = source_a();
     c.functions = "gimp";
     c.normal = "logistic";
     c.touch = 1;
@@ -205,7 +213,7 @@ static uint64_t bits_elastic_consistent(void) { return elastic(MPM_SCHEME_CONSIS
 /* The default impact with bonds in the consistent scheme of contact. */
 static uint64_t bits_consistent(void)
 {
-    impact_case c = impact_case_default();
+    impact_case c = source_a();
     c.scheme = "consistent";
     c.spacing = 0.75;
     c.friction = 0.3;
@@ -229,7 +237,7 @@ int main(int argc, char **argv)
          {UINT64_C(0x9db9600ffe2f606c), UINT64_C(0xc640650970e9dfc5)}},
         {"default, 400 steps", bits_default_early, 1, 0, {UINT64_C(0xed09938717caa2a8), UINT64_C(0xb30e01e4664e7ecf)}},
         {"gimp, logistic", bits_logistic, 1, 0, {UINT64_C(0x54e5becc21bdd6d5), UINT64_C(0xe63c6d3508095011)}},
-        {"axisymmetric", bits_axisymmetric, 1, 0, {UINT64_C(0x7bfe76063e6fff6e), UINT64_C(0xb3b4a469dbc13a57)}},
+        {"axisymmetric", bits_axisymmetric, 1, 0, {UINT64_C(0x7990e220fa04d769), UINT64_C(0xb3b4a469dbc13a57)}},
         {"consistent", bits_consistent, 1, 0, {UINT64_C(0x34792844fdb614c9), UINT64_C(0xe4362540910bda90)}},
         {"taylor", bits_taylor, 1, 0, {UINT64_C(0x7b227b43cb1c33f1), UINT64_C(0x8e15e6da6a8488ec)}},
         {"spray", bits_spray, 1, 0, {UINT64_C(0xcdb2d9be37320c1c), UINT64_C(0x44671a3a950d43b5)}},

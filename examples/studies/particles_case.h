@@ -17,12 +17,13 @@ typedef struct particles_case {
     output out;
 } particles_case;
 
-/* A coarse 3D grid, 100 ns. */
+/* Source A's model, aluminium as its results were reproduced with, a coarse 3D grid, 100 ns. */
 static inline particles_case particles_default(const char *symmetry, const char *folder)
 {
     particles_case q;
     memset(&q, 0, sizeof q);
     q.base = impact_case_default();
+    q.base.material = "al-thesis";
     q.base.symmetry = symmetry;
     q.base.dt_factor = 0.2;
     q.base.time = 100;

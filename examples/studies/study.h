@@ -22,10 +22,12 @@ static inline int study_case_options(impact_case *c, option *o)
     return n;
 }
 
-/* The case of the studies: axisymmetric, 1.0/0.25 um, time step factor 0.2; sizes left to study_complete. */
+/* The case of the studies: source A's model, aluminium as its results were reproduced with, axisymmetric, 1.0/0.25 um,
+   time step factor 0.2; sizes left to study_complete. */
 static inline impact_case study_case_default(void)
 {
     impact_case c = impact_case_default();
+    c.material = "al-thesis";
     c.geometry = "axisymmetric";
     c.cell = 1;
     c.spacing = 0.25;

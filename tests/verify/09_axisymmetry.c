@@ -51,6 +51,7 @@ int main(void)
                  "velocity.");
     for (f = 0; f < 2; f++) {
         impact_case c = impact_case_default();
+        c.material = "al-thesis"; /* source A's model */
         c.bond = "none";
         c.functions = functions[f];
         c.dt_factor = 0.2;

@@ -64,6 +64,7 @@ int main(void)
                  "substrate). Nothing here has an answer to compare with: it shows what the method can decide.");
     printf("| functions | normal | contact where | cell/spacing (um) | rebound (m/s) | noise (m/s) | mean strain | "
            "PBCP (%%) | stays |\n|---|---|---|---|---|---|---|---|---|\n");
+    c.material = "al-thesis"; /* source A's model */
     c.geometry = "axisymmetric";
     c.dt_factor = 0.2;
     for (f = 0; f < 2; f++)

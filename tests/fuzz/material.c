@@ -41,7 +41,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     int64_t tally[MPM_TALLIES] = {0};
     mpm_material_state at;
     mpm_fault fault = {MPM_OK, NULL, 0, -1};
-    mpm_material m;
+    mpm_material m, other;
     mpm_block b;
     mpm_status s;
     int i, k;
@@ -88,6 +88,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     mpm_material_flow(&m, &at);
     mpm_material_attempt_rate(&m, &at);
     mpm_material_melt_temperature(&m, rho[0]);
+    other = m;
+    if (mpm_material_melts_at(&other, at.temperature, &fault) == MPM_OK)
+        FUZZ_WANT(mpm_finite(other.melt_temperature) && other.melt_temperature > 0);
+    mpm_material_melting_point(&m);
     mpm_material_wave_speeds(&m, m.density, &a, &c);
     fault.field = NULL;
     s = mpm_material_stress(&m, &b);

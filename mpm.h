@@ -210,7 +210,7 @@ typedef struct mpm_fault {
     mpm_status status;
     const char *field;  /* what was wrong: "cell", "density of point", ... */
     mpm_real value;     /* the offending value */
-    long index;         /* point, body or axis it belongs to; -1 for none */
+    int64_t index;      /* point, body or axis it belongs to; -1 for none */
 } mpm_fault;
 
 /* ---- tools --------------------------------------------------------------------------------- */
@@ -245,7 +245,7 @@ static inline int mpm_finite(mpm_real x)
 }
 
 /* Notes a fault, if the caller wants one, and hands its status on. */
-static inline mpm_status mpm_fail(mpm_fault *f, mpm_status s, const char *field, mpm_real value, long index)
+static inline mpm_status mpm_fail(mpm_fault *f, mpm_status s, const char *field, mpm_real value, int64_t index)
 {
     if (f) {
         f->status = s;
@@ -257,7 +257,7 @@ static inline mpm_status mpm_fail(mpm_fault *f, mpm_status s, const char *field,
 }
 
 /* MPM_OK if `ok` and the value is finite; else a fault that names the field: MPM_ERR_ARGUMENT or MPM_ERR_NAN. */
-static inline mpm_status mpm_want(int ok, mpm_fault *f, const char *field, mpm_real value, long index)
+static inline mpm_status mpm_want(int ok, mpm_fault *f, const char *field, mpm_real value, int64_t index)
 {
     if (!mpm_finite(value)) return mpm_fail(f, MPM_ERR_NAN, field, value, index);
     return ok ? MPM_OK : mpm_fail(f, MPM_ERR_ARGUMENT, field, value, index);
@@ -686,17 +686,17 @@ typedef struct mpm_world {
     mpm_desc desc;
     mpm_real time, dt;       /* now; the step under way, set by mpm_locate */
     mpm_real dt_last;        /* the step before it, whose rates the points hold */
-    long steps;
+    int64_t steps;
     mpm_points points;
     mpm_body *body;
     int32_t bodies;
     mpm_ledger ledger;
     mpm_fault fault;         /* the last failure */
-    long retired;            /* points that left the grid */
-    long sorts;              /* times the points were put back in cell order */
-    long notices;            /* positive statuses returned by materials */
+    int64_t retired;         /* points that left the grid */
+    int64_t sorts;           /* times the points were put back in cell order */
+    int64_t notices;         /* positive statuses returned by materials */
     int64_t tally[MPM_TALLIES]; /* counters of laws */
-    long held;               /* pairs that were held in the last step */
+    int64_t held;            /* pairs that were held in the last step */
     int32_t next_id;         /* of the next point made */
     mpm_rule *rule;          /* of mpm_contact_set; the last that fits a pair is its rule */
     int32_t rules;
@@ -2917,7 +2917,7 @@ static inline void mpm__keep_order(mpm_world *w)
 /* mpm_locate with the room there is, or with what MPM_MALLOC gives. */
 static inline mpm_status mpm__locate(mpm_world *w)
 {
-    const long retired = w->retired;
+    const int64_t retired = w->retired;
     int32_t b, possible;
     mpm_status s;
     mpm__grid_reset(w);
@@ -3851,14 +3851,15 @@ static inline void mpm__put_point(mpm_world *w, const mpm_body_desc *d, int32_t 
 }
 
 /* A point outside the grid along axis a. */
-static inline mpm_status mpm__outside(int a, const mpm_real *x, long index, mpm_fault *f)
+static inline mpm_status mpm__outside(int a, const mpm_real *x, int64_t index, mpm_fault *f)
 {
     static const char *const name[3] = {"x of a point", "y of a point", "z of a point"};
     return mpm_fail(f, MPM_ERR_OUTSIDE, name[a], x[a], index);
 }
 
 /* Whether a point of body `own` may be placed at x: inside the grid, in no other body's shape. */
-static inline mpm_status mpm__place_check(const mpm_world *w, int32_t own, const mpm_real *x, long index, mpm_fault *f)
+static inline mpm_status mpm__place_check(const mpm_world *w, int32_t own, const mpm_real *x, int64_t index,
+                                          mpm_fault *f)
 {
     const int a = mpm__axis_outside(&w->desc, x);
     int32_t other;

@@ -492,7 +492,7 @@ MPM_API size_t mpm_io_fault_text(char *buffer, size_t n, const mpm_fault *fault)
         }
     }
     if (fault->index >= 0) {
-        snprintf(number, sizeof number, " (index %ld)", fault->index);
+        snprintf(number, sizeof number, " (index %lld)", (long long)fault->index);
         used = mpm_append(buffer, n, used, number);
     }
     return used;
@@ -1352,7 +1352,7 @@ static inline int mpm__io_skip_summed(FILE *in, uint64_t n, uint32_t *crc)
 
 /* Compares n bytes of the file with a text. Returns the beginning of the text's first line that differs, and its
    number; NULL if there is none. */
-static inline const char *mpm__io_text_differs(FILE *in, uint64_t n, const char *text, long *line, uint32_t *crc)
+static inline const char *mpm__io_text_differs(FILE *in, uint64_t n, const char *text, int64_t *line, uint32_t *crc)
 {
     const char *start = text, *at = text;
     for (*line = 1; n > 0; n--) {
@@ -1387,7 +1387,7 @@ static inline mpm_status mpm__io_text_verify(FILE *in, const char *text, uint32_
 {
     mpm__io_blob_head head, wanted = mpm__io_blob_head_make("text", 0);
     const char *differs;
-    long line;
+    int64_t line;
     if (fread(&head, sizeof head, 1, in) != 1 || memcmp(head.name, wanted.name, sizeof head.name) != 0)
         return mpm_fail(fault, MPM_ERR_FILE, "text of checkpoint", 0, -1);
     *crc = mpm__io_crc(*crc, &head, sizeof head);

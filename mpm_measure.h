@@ -161,7 +161,7 @@ typedef struct mpm_pull {
     double force, grip_force;  /* tension between the bodies, and in the upper grip: means of the last sample */
     double work;               /* of the upper grip, grip_force over the way [energy] */
     double peak_force, peak_stress, peak_separation; /* largest tension of a sample: it, over the area, where */
-    long samples;
+    int64_t samples;
     double sum[2], since;      /* impulses and time of the sample under way */
 } mpm_pull;
 
@@ -213,7 +213,7 @@ typedef struct mpm_logistic {
     double theta[6];            /* t0 .. t5 of the scaled parameters */
     double center[2], half[2];  /* middle and half width of the range of x1 and x2 */
     double cost;                /* J, mean negative log-likelihood (A 4.13), ridge excluded */
-    long wrong;                 /* tests on the wrong side of the boundary */
+    int64_t wrong;              /* tests on the wrong side of the boundary */
     int iterations;             /* Newton steps taken */
 } mpm_logistic;
 
@@ -226,7 +226,7 @@ typedef struct mpm_logistic {
    (also when there is only one: index -1), a parameter that is not finite or the same in all tests.
    Test: 31_calibration. */
 MPM_API mpm_status mpm_logistic_fit(mpm_logistic *fit, const double *x1, const double *x2, const int *outcome,
-                                         long n, double ridge, int steps, mpm_fault *fault);
+                                         int64_t n, double ridge, int steps, mpm_fault *fault);
 
 /* Z at (x1, x2): positive where outcome 1 is the likelier. Test: 31_calibration. */
 MPM_API double mpm_logistic_z(const mpm_logistic *fit, double x1, double x2);
@@ -562,11 +562,11 @@ static inline int mpm__cholesky(double H[MPM__TERMS][MPM__TERMS], const double *
 }
 
 /* J (A 4.13), and with gradient g (A 4.14) and Hessian H where asked. Sets fit->cost and fit->wrong. */
-static inline double mpm__logistic_cost(mpm_logistic *f, const double *x1, const double *x2, const int *outcome, long n,
-                                        double ridge, double *g, double (*H)[MPM__TERMS])
+static inline double mpm__logistic_cost(mpm_logistic *f, const double *x1, const double *x2, const int *outcome,
+                                        int64_t n, double ridge, double *g, double (*H)[MPM__TERMS])
 {
     double X[MPM__TERMS], penalty = 0;
-    long t;
+    int64_t t;
     int i, j;
     f->cost = 0;
     f->wrong = 0;
@@ -593,11 +593,11 @@ static inline double mpm__logistic_cost(mpm_logistic *f, const double *x1, const
 }
 
 /* The range of a parameter. */
-static inline mpm_status mpm__logistic_scale(mpm_logistic *f, int axis, const double *x, long n, const char *field,
+static inline mpm_status mpm__logistic_scale(mpm_logistic *f, int axis, const double *x, int64_t n, const char *field,
                                              mpm_fault *fault)
 {
     double low = x[0], high = x[0];
-    long t;
+    int64_t t;
     for (t = 0; t < n; t++) {
         if (!(x[t] - x[t] >= 0)) return mpm_fail(fault, MPM_ERR_NAN, field, (mpm_real)x[t], t); /* inf too */
         if (x[t] < low) low = x[t];
@@ -609,9 +609,9 @@ static inline mpm_status mpm__logistic_scale(mpm_logistic *f, int axis, const do
     return MPM_OK;
 }
 
-static inline mpm_status mpm__logistic_check(const int *outcome, long n, double ridge, int steps, mpm_fault *fault)
+static inline mpm_status mpm__logistic_check(const int *outcome, int64_t n, double ridge, int steps, mpm_fault *fault)
 {
-    long t, ones = 0;
+    int64_t t, ones = 0;
     mpm_status s = mpm_want(n >= MPM__TERMS, fault, "logistic n", (mpm_real)n, -1);
     if (s == MPM_OK) s = mpm_want(ridge >= 0, fault, "logistic ridge", (mpm_real)ridge, -1);
     if (s == MPM_OK) s = mpm_want(steps > 0, fault, "logistic steps", (mpm_real)steps, -1);
@@ -625,7 +625,7 @@ static inline mpm_status mpm__logistic_check(const int *outcome, long n, double 
 }
 
 MPM_API mpm_status mpm_logistic_fit(mpm_logistic *fit, const double *x1, const double *x2, const int *outcome,
-                                         long n, double ridge, int steps, mpm_fault *fault)
+                                         int64_t n, double ridge, int steps, mpm_fault *fault)
 {
     double g[MPM__TERMS], d[MPM__TERMS], H[MPM__TERMS][MPM__TERMS], from[MPM__TERMS], now, gain, share;
     mpm_status s = mpm__logistic_check(outcome, n, ridge, steps, fault);

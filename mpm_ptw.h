@@ -1248,7 +1248,7 @@ static inline mpm_real mpm__ptw_cold_pressure(const mpm_material *m, mpm_real mu
     return mu < 0 ? p : p * (1 - m->gruneisen * mu / (2 * (1 + mu)));
 }
 
-static inline mpm_status mpm__ptw_eos_range(const mpm_material *m, mpm_real density, long index,
+static inline mpm_status mpm__ptw_eos_range(const mpm_material *m, mpm_real density, int64_t index,
                                             mpm_fault *fault)
 {
     mpm_real mu = density / m->density - 1;

@@ -1493,7 +1493,7 @@ MPM_API mpm_status mpm_spray_fly(mpm_spray *s)
             s->v[3 * i + k] = to.v[k];
         }
         if (!mpm_finite(sum))
-            return mpm_fail(&s->fault, MPM_ERR_NAN, "velocity of particle", sum, (long)s->id[i]);
+            return mpm_fail(&s->fault, MPM_ERR_NAN, "velocity of particle", sum, s->id[i]);
     }
     s->tally.particle_steps += s->live;
     return result;

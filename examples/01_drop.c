@@ -55,14 +55,14 @@ int main(void)
                    now.high[2] - now.low[2] + 0.5, 100 * now.kinetic / start.kinetic);
         }
         if (mpm_step(&w, dt) < 0) {
-            printf("%s: %g at point %ld\n", w.fault.field, (double)w.fault.value, w.fault.index);
+            printf("%s: %g at point %lld\n", w.fault.field, (double)w.fault.value, (long long)w.fault.index);
             return 1;
         }
     }
 
     /* What came out of it. Nothing is lost: what the wall gave is all the momentum that changed. */
     now = mpm_body_totals(&w, 0);
-    printf("points: %ld, steps: %ld\n", now.points, w.steps);
+    printf("points: %ld, steps: %lld\n", now.points, (long long)w.steps);
     printf("the ball gained, of the momentum the wall gave: %.6f\n",
            (now.momentum[2] - start.momentum[2]) / w.ledger.impulse[2]);
     printf("height of the ball: %.2f um\n", now.high[2] - now.low[2] + 0.5);

@@ -42,7 +42,7 @@ static int begin(mpm_world *w, const mpm_material *al)
     return mpm_body_add(w, &b) >= 0;
 }
 
-static int run(mpm_world *w, const mpm_bond *bond, long until)
+static int run(mpm_world *w, const mpm_bond *bond, int64_t until)
 {
     const mpm_real dt = mpm_time_step(w, MPM_R(0.2));
     while (w->steps < until)
@@ -51,9 +51,9 @@ static int run(mpm_world *w, const mpm_bond *bond, long until)
 }
 
 /* Numbers of the points that differ in a bit. */
-static long differing(const mpm_world *a, const mpm_world *b)
+static int64_t differing(const mpm_world *a, const mpm_world *b)
 {
-    long n = 0;
+    int64_t n = 0;
     int32_t i;
     int f;
     for (f = 0; f < a->fields; f++)
@@ -86,7 +86,7 @@ int main(int argc, char **argv)
         printf("%s: %s\n", path, fault.field);
         return 1;
     }
-    printf("broken off after %ld steps, %.2f ns\n", first.steps, 1e3 * (double)first.time);
+    printf("broken off after %lld steps, %.2f ns\n", (long long)first.steps, 1e3 * (double)first.time);
     mpm_free(&first);
 
     if (!begin(&second, &al)) return 1;
@@ -96,14 +96,15 @@ int main(int argc, char **argv)
         printf("%s: %s\n", path, fault.field);
         return 1;
     }
-    printf("goes on after %ld steps, %.2f ns\n", second.steps, 1e3 * (double)second.time);
+    printf("goes on after %lld steps, %.2f ns\n", (long long)second.steps, 1e3 * (double)second.time);
     if (!run(&second, &bond, STEPS)) return 1;
 
     printf("bonded: %.3f and %.3f %% of the touched surface\n", mpm_bond_measure_body(&whole, -1).pbcp,
            mpm_bond_measure_body(&second, -1).pbcp);
     printf("the ledgers are %s\n",
            memcmp(&whole.ledger, &second.ledger, sizeof whole.ledger) ? "different" : "the same");
-    printf("numbers that differ: %ld of %ld\n", differing(&whole, &second), (long)whole.points.count * whole.fields);
+    printf("numbers that differ: %lld of %lld\n", (long long)differing(&whole, &second),
+           (long long)whole.points.count * whole.fields);
     mpm_free(&whole);
     mpm_free(&second);
     remove(path);

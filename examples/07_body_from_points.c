@@ -64,7 +64,7 @@ static int read_points(const char *path, mpm_real x[3][MOST], mpm_real *volume, 
 
 static int failed(const mpm_world *w)
 {
-    printf("%s: %g, number %ld\n", w->fault.field, (double)w->fault.value, w->fault.index);
+    printf("%s: %g, number %lld\n", w->fault.field, (double)w->fault.value, (long long)w->fault.index);
     return 1;
 }
 
@@ -128,7 +128,7 @@ int main(int argc, char **argv)
     for (k = 0; k < 3; k++)
         printf("%s now lies between %.3f and %.3f m\n", k == 0 ? "ring" : k == 1 ? "grains" : "ball",
                mpm_body_totals(&w, k).low[2], mpm_body_totals(&w, k).high[2]);
-    printf("in all: %.5f kg, %ld points have left\n", mpm_body_totals(&w, -1).mass, w.retired);
+    printf("in all: %.5f kg, %lld points have left\n", mpm_body_totals(&w, -1).mass, (long long)w.retired);
     mpm_free(&w);
     return fflush(stdout) || ferror(stdout); /* 1 if what was printed is lost */
 }

@@ -264,13 +264,13 @@ static inline mpm_body_desc impact_body(mpm_material *m, const impact_case *c, i
 
 /* Builds `count` particles at these centres (um) and the substrate, as the last body, in the grid d. Returns 1, or 0
    with a message; then nothing is left to free. */
-static inline int impact_build(impact *s, const impact_case *c, mpm_desc d, const double (*center)[3], long count,
+static inline int impact_build(impact *s, const impact_case *c, mpm_desc d, const double (*center)[3], int64_t count,
                                char *message, size_t n)
 {
     mpm_body_desc particle, substrate;
     mpm_status status;
     double steps;
-    long k;
+    int64_t k;
     int a;
     for (a = 0; a < 2; a++)
         if (!impact_metal(&s->material[a], c, a, message, n)) return 0;

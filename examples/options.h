@@ -39,9 +39,9 @@ static inline int words_shown(const char *list)
 
 /* ---- the table ------------------------------------------------------------------------------- */
 
-typedef enum option_type { OPTION_REAL, OPTION_LONG, OPTION_TEXT, OPTION_WORD, OPTION_FLAG } option_type;
+typedef enum option_type { OPTION_REAL, OPTION_INTEGER, OPTION_TEXT, OPTION_WORD, OPTION_FLAG } option_type;
 
-/* One option: --name VALUE (or --name alone for a flag). `value` points to a double, a long, a
+/* One option: --name VALUE (or --name alone for a flag). `value` points to a double, an int64_t, a
    const char * (of a text or a word) or an int, holding the default. */
 typedef struct option {
     const char *name;
@@ -93,7 +93,7 @@ static inline const char *option_text(const option *o, char number[OPTION_NUMBER
 {
     switch (o->type) {
     case OPTION_REAL: snprintf(number, OPTION_NUMBER, "%.15g", *(double *)o->value); return number;
-    case OPTION_LONG: snprintf(number, OPTION_NUMBER, "%ld", *(long *)o->value); return number;
+    case OPTION_INTEGER: snprintf(number, OPTION_NUMBER, "%lld", (long long)*(int64_t *)o->value); return number;
     case OPTION_FLAG: return *(int *)o->value ? "on" : "off";
     case OPTION_TEXT:
     case OPTION_WORD: break;
@@ -127,17 +127,17 @@ static inline int option_set(const option *o, const char *text)
         double v = strtod(text, &end);
         if (end == text || *end || isnan(v)) goto bad;
         *(double *)o->value = v;
-    } else if (o->type == OPTION_LONG) {
-        long v = strtol(text, &end, 10);
+    } else if (o->type == OPTION_INTEGER) {
+        long long v = strtoll(text, &end, 10);
         if (end == text || *end || errno) goto bad;
-        *(long *)o->value = v;
+        *(int64_t *)o->value = v;
     } else {
         *(const char **)o->value = text;
     }
     return 0;
 bad:
     fprintf(stderr, "error: --%s needs a%s number, not '%s'\n", o->name,
-            o->type == OPTION_LONG ? " whole" : "", text);
+            o->type == OPTION_INTEGER ? " whole" : "", text);
     return -1;
 }
 

@@ -15,10 +15,10 @@ typedef struct output {
     const char *folder, *name;  /* of the series: name.pvd */
     const char *length, *time;  /* units; a thousand of the unit of time are one of the world's */
     double rate;                /* a strain rate of the world, in 1/us */
-    long frames;                /* wanted, evenly in time, both ends included; 1: of the end */
+    int64_t frames;             /* wanted, evenly in time, both ends included; 1: of the end */
     int quiet;
 
-    long frame;                 /* frames written */
+    int64_t frame;              /* frames written */
     double cpu, earlier;        /* seconds without the writing: by output_cpu; when output_start was called */
     int64_t first;              /* steps when output_start was called */
     clock_t begun, shown, writing;
@@ -39,7 +39,7 @@ static inline output output_of(const char *folder, const char *name, const char 
 
 static inline void output_options(output *o, option *options, int *n)
 {
-    option_add(options, n, "frames", OPTION_LONG, &o->frames,
+    option_add(options, n, "frames", OPTION_INTEGER, &o->frames,
                "pictures and ParaView files, evenly in time, both ends included; 1: of the end alone");
     option_add(options, n, "out", OPTION_TEXT, &o->folder, "output folder");
     option_add(options, n, "quiet", OPTION_FLAG, &o->quiet, "no progress line, no table");
@@ -84,7 +84,7 @@ static inline double output_cpu(output *o)
 static inline int output_due(const output *o, const mpm_world *w, int64_t steps)
 {
     if (o->frames <= 1) return o->frames == 1 && o->frame == 0 && w->steps >= steps;
-    return (int64_t)w->steps * (o->frames - 1) >= (int64_t)o->frame * steps;
+    return w->steps * (o->frames - 1) >= o->frame * steps;
 }
 
 /* ---- pictures ------------------------------------------------------------------------------ */
@@ -204,12 +204,12 @@ static inline int output_frame(output *o, const mpm_world *w, const mpm_io_field
     char series[64], name[64], path[PATH_BYTES];
     mpm_fault fault;
     snprintf(series, sizeof series, "%s.pvd", o->name);
-    snprintf(name, sizeof name, "points_%04ld.vtu", o->frame);
+    snprintf(name, sizeof name, "points_%04lld.vtu", (long long)o->frame);
     if (!output_points(o, w, more, count, name)) return 0;
     if (mpm_io_pvd_add(file_in(o->folder, series, path, sizeof path), name, (double)w->time * 1e3, &fault) < 0)
         return report(&fault, path);
     o->writing += clock() - mark;
-    snprintf(name, sizeof name, "frame_%04ld.png", o->frame++);
+    snprintf(name, sizeof name, "frame_%04lld.png", (long long)o->frame++);
     return output_png(o, p, name);
 }
 

@@ -27,9 +27,10 @@ static inline void options_json(mpm_io_json *j, const option *options, int n)
     int i;
     mpm_io_json_open(j, "options");
     for (i = 0; i < n; i++) {
-        if (options[i].type == OPTION_REAL) mpm_io_json_number(j, options[i].name, *(double *)options[i].value);
-        else if (options[i].type == OPTION_LONG) mpm_io_json_integer(j, options[i].name, *(long *)options[i].value);
-        else mpm_io_json_string(j, options[i].name, option_text(&options[i], number));
+        const option *o = &options[i];
+        if (o->type == OPTION_REAL) mpm_io_json_number(j, o->name, *(double *)o->value);
+        else if (o->type == OPTION_INTEGER) mpm_io_json_integer(j, o->name, *(int64_t *)o->value);
+        else mpm_io_json_string(j, o->name, option_text(o, number));
     }
     mpm_io_json_close(j);
 }
@@ -96,7 +97,7 @@ static inline int options_match(const char *summary, const option *o, const opti
     if (!block) return 0;
     for (k = 0; k < n; k++) {
         const char *at = json_value(block, o[k].name);
-        const int quoted = o[k].type != OPTION_REAL && o[k].type != OPTION_LONG;
+        const int quoted = o[k].type != OPTION_REAL && o[k].type != OPTION_INTEGER;
         const char *text = option_text(&o[k], mine), *other = theirs;
         const size_t length = strlen(text);
         if (!at) other = option_text(&plain[k], theirs);

@@ -21,7 +21,7 @@ typedef struct settings {
     const char *gas, *release, *gamma12, *restitution, *contact, *deposit, *criterion, *out, *restart;
     double speed, alpha, friction, median_radius, shape, size_min, size_max, feed, dt, time, theta, box;
     double stand_off, critical, erosion;
-    long batch, particles, steps, seed, frames;
+    int64_t batch, particles, steps, seed, frames;
     int quiet;
 } settings;
 
@@ -75,10 +75,10 @@ static int options_of(option *o, settings *s)
     option_add(o, &n, "size-min", OPTION_REAL, &s->size_min, "smallest diameter, um");
     option_add(o, &n, "size-max", OPTION_REAL, &s->size_max, "largest diameter, um; 0: the nozzle radius");
     option_add(o, &n, "feed", OPTION_REAL, &s->feed, "particles/s");
-    option_add(o, &n, "batch", OPTION_LONG, &s->batch, "particles injected together");
-    option_add(o, &n, "particles", OPTION_LONG, &s->particles, "stop the feed after so many; 0: never");
+    option_add(o, &n, "batch", OPTION_INTEGER, &s->batch, "particles injected together");
+    option_add(o, &n, "particles", OPTION_INTEGER, &s->particles, "stop the feed after so many; 0: never");
     option_add(o, &n, "dt", OPTION_REAL, &s->dt, "time step, s");
-    option_add(o, &n, "steps", OPTION_LONG, &s->steps, "how many; 0: as --time says");
+    option_add(o, &n, "steps", OPTION_INTEGER, &s->steps, "how many; 0: as --time says");
     option_add(o, &n, "time", OPTION_REAL, &s->time, "end time, s");
     option_add(o, &n, "theta", OPTION_REAL, &s->theta, "0 explicit, 0.5 trapezoidal, 1 implicit");
     option_add_word(o, &n, "contact", &s->contact, MPM_NAMES(MPM_SPRAY_CONTACT_LIST), "along paths or at their end");
@@ -88,9 +88,9 @@ static int options_of(option *o, settings *s)
     option_add(o, &n, "erosion", OPTION_REAL, &s->erosion, "window: no bond above, m/s");
     option_add(o, &n, "stand-off", OPTION_REAL, &s->stand_off, "nozzle to target, m");
     option_add(o, &n, "box", OPTION_REAL, &s->box, "half width of the domain, m");
-    option_add(o, &n, "seed", OPTION_LONG, &s->seed, "of the random numbers");
+    option_add(o, &n, "seed", OPTION_INTEGER, &s->seed, "of the random numbers");
     option_add(o, &n, "out", OPTION_TEXT, &s->out, "folder for the results");
-    option_add(o, &n, "frames", OPTION_LONG, &s->frames, "VTK files over the run; 0: none");
+    option_add(o, &n, "frames", OPTION_INTEGER, &s->frames, "VTK files over the run; 0: none");
     option_add(o, &n, "restart", OPTION_TEXT, &s->restart, "go on from this checkpoint.bin to --steps or --time");
     option_add(o, &n, "quiet", OPTION_FLAG, &s->quiet, "no progress, no table");
     return n;
@@ -246,7 +246,7 @@ static void write_impact(void *user, const mpm_spray_touch *t)
 #define IMPACT_COLUMNS "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,diameter_m,stuck,id,on_deposit"
 
 /* A frame is named by its step: a run that goes on writes the names of the uninterrupted one, and no other's. */
-static void frame_name(char *name, size_t n, long step) { snprintf(name, n, "spray-%09ld.vtu", step); }
+static void frame_name(char *name, size_t n, int64_t step) { snprintf(name, n, "spray-%09lld.vtu", (long long)step); }
 
 /* All particles, in flight and deposited, as one VTK file. */
 static mpm_status write_frame(const char *folder, const mpm_spray *s, spray_columns *c, const char *note,
@@ -282,7 +282,7 @@ static mpm_status write_frame(const char *folder, const mpm_spray *s, spray_colu
     d.time = (double)mpm_spray_time(s);
     d.float32 = 1;
     d.note = note;
-    frame_name(name, sizeof name, (long)s->tally.step);
+    frame_name(name, sizeof name, s->tally.step);
     file_in(folder, name, path, sizeof path);
     if ((status = mpm_io_vtu(path, &d, fault)) < 0) return status;
     file_in(folder, "spray.pvd", path, sizeof path);
@@ -355,20 +355,20 @@ static mpm_status read_checkpoint(const char *path, mpm_spray *s, const option *
     return status;
 }
 
-static long steps_per_frame(const settings *o, long steps)
+static int64_t steps_per_frame(const settings *o, int64_t steps)
 {
     return o->frames > 0 ? (steps + o->frames - 1) / o->frames : steps + 1;
 }
 
 /* Begins the series with those frames in the folder that this run has or would have written. */
-static mpm_status begin_series(const settings *o, const mpm_spray *s, long every, mpm_fault *fault)
+static mpm_status begin_series(const settings *o, const mpm_spray *s, int64_t every, mpm_fault *fault)
 {
     char path[PATH_BYTES], frame[PATH_BYTES], name[64];
     mpm_status status;
-    long step;
+    int64_t step;
     snprintf(path, sizeof path, "%s/spray.pvd", o->out);
     status = mpm_io_pvd_begin(path, fault);
-    for (step = every; step <= (long)s->tally.step && status >= 0; step += every) {
+    for (step = every; step <= s->tally.step && status >= 0; step += every) {
         FILE *f;
         frame_name(name, sizeof name, step);
         snprintf(frame, sizeof frame, "%s/%s", o->out, name);
@@ -606,7 +606,7 @@ static int carry_out(int argc, char **argv)
     }
     before = s.tally.particle_steps;
     if (s.tally.step > steps) {
-        fprintf(stderr, "error: --restart %s is at step %ld, past the end\n", o.restart, (long)s.tally.step);
+        fprintf(stderr, "error: --restart %s is at step %lld, past the end\n", o.restart, (long long)s.tally.step);
         return 1;
     }
     if (spray_columns_init(&columns, (size_t)d.capacity)) return fprintf(stderr, "error: no memory\n"), 1;

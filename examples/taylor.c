@@ -101,8 +101,8 @@ static void print_table(const taylor *s, const taylor_case *c, const taylor_resu
     printf("  mean velocity          %10.3f m/s\n", r->velocity);
     printf("  errors: mass %.1e, momentum %.1e, energy unaccounted %.3f %%\n", r->mass_error, r->momentum_error,
            100 * r->energy_unaccounted);
-    printf("  %d points, %ld retired, %lld steps of %.4g ns, %.1f s CPU\n", (int)w->points.count, w->retired,
-           (long long)w->steps, (double)s->dt * 1e6, cpu);
+    printf("  %d points, %lld retired, %lld steps of %.4g ns, %.1f s CPU\n", (int)w->points.count,
+           (long long)w->retired, (long long)w->steps, (double)s->dt * 1e6, cpu);
 }
 
 /* Time integration: one call per phase. */

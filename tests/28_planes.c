@@ -76,12 +76,12 @@ static void anywhere(void)
 }
 
 /* A bar with a layer of points on a side is squeezed onto it. Returns how many points leave. */
-static long squeezed(mpm_side side, mpm_basis basis, int high, double speed)
+static int64_t squeezed(mpm_side side, mpm_basis basis, int high, double speed)
 {
     mpm_material m = scene_metal(1, mpm_units_um_us_ng());
     mpm_desc d = scene_grid(1, 10, 1, 10, high ? -10 : 0, 0, 0);
     mpm_body_desc b = scene_body(&m, mpm_box(MPM_R(-4.25), 0, 0, MPM_R(4.25), 1, 10), 0.5, 0);
-    long on = 0, left;
+    int64_t on = 0, left;
     mpm_world w;
     int32_t i;
     int n;

@@ -21,7 +21,7 @@
 #endif
 
 /* The checks as functions: an argument that writes a file is then evaluated once. */
-static void equal(const char *what, long got, long wanted) { CHECK_EQUAL(what, got, wanted); }
+static void equal(const char *what, long long got, long long wanted) { CHECK_EQUAL(what, got, wanted); }
 static void holds(const char *what, int condition) { CHECK_TRUE(what, condition); }
 
 /* ---- reading back ---------------------------------------------------------------------------- */
@@ -110,6 +110,9 @@ static void test_messages(void)
     equal("fault text is cut to fit", (long)mpm_io_fault_text(text, 8, &f), 7);
     holds("... and terminated", strcmp(text, "an argu") == 0);
     equal("no room at all", (long)mpm_io_fault_text(text, 0, &f), 0);
+    f.index = INT64_C(5000000000);
+    mpm_io_fault_text(text, sizeof text, &f);
+    holds("a number beyond 32 bits", strstr(text, "(index 5000000000)") != NULL);
     mpm_io_progress_text(text, sizeof text, &p);
     holds("progress",
           strcmp(text, "step 1200/9900  12 %  t = 9.7 ns  1.2e6 points/s  left 0:43") == 0);
@@ -783,6 +786,33 @@ static mpm_status load(const char *path, mpm_world *w, mpm_fault *f)
     return status;
 }
 
+/* Counters of any length of run, in as many bytes on every platform. */
+static void test_counters(void)
+{
+    static const char *const counters[] = {"steps", "retired", "sorts", "notices", "held"};
+    const char *path = FOLDER "/counters.mpm";
+    mpm_blob blob[MPM_BLOBS(2)];
+    mpm_world far_on, again;
+    mpm_fault f;
+    size_t i;
+    int n, k, eight = 0;
+    equal("a world", make_world(&far_on), MPM_OK);
+    equal("another", make_world(&again), MPM_OK);
+    n = mpm_blobs(&far_on, blob);
+    for (i = 0; i < sizeof counters / sizeof *counters; i++)
+        for (k = 0; k < n; k++) eight += !strcmp(blob[k].name, counters[i]) && blob[k].bytes == 8;
+    equal("counters of eight bytes", eight, 5);
+    far_on.steps = far_on.sorts = INT64_C(5000000000);
+    far_on.retired = far_on.notices = far_on.held = INT64_C(6000000000);
+    equal("saved after 5e9 steps", save(path, &far_on), MPM_OK);
+    equal("loaded", load(path, &again, &f), MPM_OK);
+    holds("they are all there", !worlds_differ(&far_on, &again));
+    equal("a step", mpm_step(&again, MPM_R(1e-6)), MPM_OK);
+    equal("... counted", again.steps, INT64_C(5000000001));
+    mpm_free(&far_on);
+    mpm_free(&again);
+}
+
 static void test_restart(void)
 {
     static int32_t numbers[4000];
@@ -1026,6 +1056,7 @@ int main(void)
     test_pvd();
     test_checkpoint();
     test_text();
+    test_counters();
     test_restart();
     test_room();
     test_crafted();

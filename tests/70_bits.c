@@ -87,7 +87,7 @@ static uint64_t libm_bits(void)
 
 /* ---- the runs ------------------------------------------------------------------------------ */
 
-static uint64_t run_impact(const impact_case *c, long steps)
+static uint64_t run_impact(const impact_case *c, int64_t steps)
 {
     char message[300];
     uint64_t hash = 0;

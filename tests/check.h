@@ -35,11 +35,11 @@ static inline void check_near(const char *what, double got, double wanted, doubl
     check_near(what, (double)(got), (double)(wanted), (double)(tolerance))
 
 /* two whole numbers (counts, statuses) are the same */
-static inline void check_equal(const char *what, long got, long wanted)
+static inline void check_equal(const char *what, long long got, long long wanted)
 {
     check_line(got == wanted, what, (double)got, (double)wanted, 0);
 }
-#define CHECK_EQUAL(what, got, wanted) check_equal(what, (long)(got), (long)(wanted))
+#define CHECK_EQUAL(what, got, wanted) check_equal(what, (long long)(got), (long long)(wanted))
 
 /* a condition holds */
 #define CHECK_TRUE(what, condition) CHECK_EQUAL(what, (condition) ? 1 : 0, 1)

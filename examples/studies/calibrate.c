@@ -23,12 +23,12 @@ static int list(const calibration *q, const study *s)
 {
     static calibration_map map;
     int size;
-    long k;
+    int64_t k;
     for (size = 0; size < 2; size++) {
         calibration_look(q, s, size, &map);
         for (k = 0; k < calibration_nodes(q); k++)
             if (map.wanted[k] && map.bonds[k] < 0)
-                printf("%ld  %g um at %g m/s, G_c %.6g, Gdot_c %.6g\n", size * calibration_nodes(q) + k,
+                printf("%lld  %g um at %g m/s, G_c %.6g, Gdot_c %.6g\n", (long long)(size * calibration_nodes(q) + k),
                        q->diameter[size], q->velocity[size], calibration_gc(q, k), calibration_gdot(q, k));
     }
     return 0;
@@ -40,7 +40,7 @@ static int write_tasks(const calibration *q, const study *s, mpm_fault *fault)
     double value[STUDY_VALUES];
     mpm_io_csv t;
     int size;
-    long k;
+    int64_t k;
     mpm_io_csv_begin(&t, file_in(s->folder, "tasks.csv", path, sizeof path),
                      "task,diameter_um,velocity_m_s,gc_J_m2,gdot_J_m2_us,pbcp_percent,restitution_ratio,v_late_m_s,"
                      "bonds", program, fault);
@@ -111,10 +111,10 @@ static void print_result(const calibration *q, const calibration_result *r, cons
     printf("\n");
     for (k = 0; k < 2; k++) {
         const calibration_side *side = &r->side[k];
-        printf("  %g um at %g m/s: %ld of %ld runs bonded, ", q->diameter[k], q->velocity[k], side->bonded,
-               side->tests);
+        printf("  %g um at %g m/s: %lld of %lld runs bonded, ", q->diameter[k], q->velocity[k],
+               (long long)side->bonded, (long long)side->tests);
         if (side->status < 0) printf("no boundary: %s\n", side->why);
-        else printf("%ld on the wrong side of the fitted boundary\n", side->fit.wrong);
+        else printf("%lld on the wrong side of the fitted boundary\n", (long long)side->fit.wrong);
         if (side->status > 0) printf("    the fit: %s\n", side->why);
     }
     for (k = 0; k < r->points; k++)
@@ -150,7 +150,7 @@ static int collect(const calibration *q, const study *s, const option *o, int n,
 /* What to do with the sweep. */
 typedef struct errand {
     int list, collect;
-    long task; /* < 0: all */
+    int64_t task; /* < 0: all */
 } errand;
 
 static int options(calibration *q, study *s, errand *e, option *o)
@@ -165,8 +165,8 @@ static int options(calibration *q, study *s, errand *e, option *o)
     option_add(o, &n, "gc-high", OPTION_REAL, &q->gc[1], "");
     option_add(o, &n, "gdot-low", OPTION_REAL, &q->gdot[0], "range of Gdot_c, J/m2/us");
     option_add(o, &n, "gdot-high", OPTION_REAL, &q->gdot[1], "");
-    option_add(o, &n, "columns", OPTION_LONG, &q->columns, "values of G_c");
-    option_add(o, &n, "rows", OPTION_LONG, &q->rows, "values of Gdot_c");
+    option_add(o, &n, "columns", OPTION_INTEGER, &q->columns, "values of G_c");
+    option_add(o, &n, "rows", OPTION_INTEGER, &q->rows, "values of Gdot_c");
     option_add_word(o, &n, "scale", &q->scale, CALIBRATION_SCALES, "the steps, and what the fit sees");
     option_add(o, &n, "plain", OPTION_FLAG, &q->plain, "run every pair, not only where the class changes");
     option_add(o, &n, "diameter-1", OPTION_REAL, &q->diameter[0], "um");
@@ -182,7 +182,7 @@ static int options(calibration *q, study *s, errand *e, option *o)
     option_add(o, &n, "stays", OPTION_REAL, &q->stays, "rule stays: the late mean velocity is below, m/s");
     option_add(o, &n, "ridge", OPTION_REAL, &q->ridge, "of the fits: holds those of separable classes back");
     option_add(o, &n, "list", OPTION_FLAG, &e->list, "print the tasks that are not done");
-    option_add(o, &n, "task", OPTION_LONG, &e->task, "do this task only; < 0: all");
+    option_add(o, &n, "task", OPTION_INTEGER, &e->task, "do this task only; < 0: all");
     option_add(o, &n, "collect", OPTION_FLAG, &e->collect, "fit and draw what is done, run nothing");
     study_options(s, o, &n);
     return n;
@@ -226,14 +226,15 @@ static int check(const calibration *q, const errand *e, char *m, size_t n)
         if (!impact_check(&c, m, n)) return 0;
     }
     if (e->task < 2 * calibration_nodes(q)) return 1;
-    snprintf(m, n, "--task %ld: there are %ld, from 0", e->task, 2 * calibration_nodes(q));
+    snprintf(m, n, "--task %lld: there are %lld, from 0", (long long)e->task,
+             2 * (long long)calibration_nodes(q));
     return 0;
 }
 
 /* The runs that the errand wants. As study_need. */
 static int run(const calibration *q, study *s, const errand *e, char *message, size_t n)
 {
-    const long nodes = calibration_nodes(q);
+    const int64_t nodes = calibration_nodes(q);
     double value[STUDY_VALUES];
     impact_case c;
     int status;

@@ -15,7 +15,7 @@ typedef struct calibration {
     impact_case base;               /* what both sizes share */
     const char *substrate, *scale, *rule; /* words of STUDY_SUBSTRATES, CALIBRATION_SCALES, CRITICAL_RULES */
     double gc[2], gdot[2];          /* ranges, J/m2, J/m2/us */
-    long columns, rows;             /* pairs along G_c, Gdot_c */
+    int64_t columns, rows;          /* pairs along G_c, Gdot_c */
     int plain;                      /* 1: every pair; 0: only where the class changes */
     double diameter[2], velocity[2]; /* um, m/s */
     double pbcp[2], restitution[2]; /* bonded: PBCP at least [%], rebound/impact velocity at most; 0: source A's */
@@ -68,10 +68,10 @@ static inline calibration calibration_default(void)
     return q;
 }
 
-static inline long calibration_nodes(const calibration *q) { return q->columns * q->rows; }
+static inline int64_t calibration_nodes(const calibration *q) { return q->columns * q->rows; }
 
 /* Node `number` of n between low and high. */
-static inline double calibration_at(const calibration *q, const double *range, long number, long n)
+static inline double calibration_at(const calibration *q, const double *range, int64_t number, int64_t n)
 {
     const double t = n > 1 ? (double)number / (double)(n - 1) : 0;
     const double v = strcmp(q->scale, "log") ? range[0] + t * (range[1] - range[0])
@@ -81,12 +81,12 @@ static inline double calibration_at(const calibration *q, const double *range, l
     return strtod(text, NULL);
 }
 
-static inline double calibration_gc(const calibration *q, long node)
+static inline double calibration_gc(const calibration *q, int64_t node)
 {
     return calibration_at(q, q->gc, node % q->columns, q->columns);
 }
 
-static inline double calibration_gdot(const calibration *q, long node)
+static inline double calibration_gdot(const calibration *q, int64_t node)
 {
     return calibration_at(q, q->gdot, node / q->columns, q->rows);
 }
@@ -98,7 +98,7 @@ static inline double calibration_from(const calibration *q, double x)
     return strcmp(q->scale, "log") ? x : pow(10, x);
 }
 
-static inline impact_case calibration_case(const calibration *q, int size, long node)
+static inline impact_case calibration_case(const calibration *q, int size, int64_t node)
 {
     impact_case c = q->base;
     c.diameter = q->diameter[size];
@@ -130,10 +130,11 @@ typedef struct calibration_map {
 } calibration_map;
 
 /* Wants the corners of a part of the grid, and where its nodes are of both classes what lies in between. */
-static inline void calibration_refine(const calibration *q, calibration_map *m, long i0, long i1, long j0, long j1)
+static inline void calibration_refine(const calibration *q, calibration_map *m, int64_t i0, int64_t i1, int64_t j0,
+                                      int64_t j1)
 {
-    const long im = (i0 + i1) / 2, jm = (j0 + j1) / 2;
-    long i, j;
+    const int64_t im = (i0 + i1) / 2, jm = (j0 + j1) / 2;
+    int64_t i, j;
     int seen[2] = {0, 0};
     m->wanted[j0 * q->columns + i0] = m->wanted[j0 * q->columns + i1] = 1;
     m->wanted[j1 * q->columns + i0] = m->wanted[j1 * q->columns + i1] = 1;
@@ -149,11 +150,11 @@ static inline void calibration_refine(const calibration *q, calibration_map *m, 
 
 /* Reads what is finished and decides what is wanted: everything, or a net of 5 x 3 nodes and from there
    wherever the class changes. Returns how many wanted nodes have not been run. */
-static inline long calibration_look(const calibration *q, const study *s, int size, calibration_map *m)
+static inline int64_t calibration_look(const calibration *q, const study *s, int size, calibration_map *m)
 {
-    const long all = calibration_nodes(q);
+    const int64_t all = calibration_nodes(q);
     double value[STUDY_VALUES];
-    long k, j, missing = 0;
+    int64_t k, j, missing = 0;
     for (k = 0; k < all; k++) {
         const impact_case c = calibration_case(q, size, k);
         m->bonds[k] = (signed char)(study_find(s, &c, value) ? calibration_bonds(q, size, value) : -1);
@@ -173,7 +174,7 @@ typedef struct calibration_side {
     mpm_logistic fit;
     mpm_status status;  /* of the fit */
     const char *why;    /* its status in words */
-    long tests, bonded;
+    int64_t tests, bonded;
 } calibration_side;
 
 typedef struct calibration_result {
@@ -188,7 +189,7 @@ static inline void calibration_fit(const calibration *q, calibration_side *side)
 {
     static double x1[CALIBRATION_NODES], x2[CALIBRATION_NODES];
     static int outcome[CALIBRATION_NODES];
-    long k;
+    int64_t k;
     side->tests = side->bonded = 0;
     for (k = 0; k < calibration_nodes(q); k++) {
         if (side->map.bonds[k] < 0) continue;
@@ -234,7 +235,7 @@ static inline int calibration_run(const calibration *q, study *s, char *message,
     static calibration_map map;
     double value[STUDY_VALUES];
     int size, status;
-    long k, missing;
+    int64_t k, missing;
     for (size = 0; size < 2; size++)
         while ((missing = calibration_look(q, s, size, &map)) > 0) {
             s->planned = s->done + missing;
@@ -284,7 +285,7 @@ static inline mpm_draw_curve calibration_class(const calibration *q, const calib
                                                calibration_dots *dots)
 {
     size_t count = 0;
-    long k;
+    int64_t k;
     for (k = 0; k < calibration_nodes(q); k++) {
         if (m->bonds[k] != bonded) continue;
         dots->x[count] = (mpm_real)calibration_gc(q, k);

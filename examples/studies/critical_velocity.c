@@ -14,7 +14,7 @@ typedef struct request {
     study s;
     impact_case c;
     const char *substrate;
-    long offsets;
+    int64_t offsets;
     critical_rule rule;
     critical_range range;
     option o[IMPACT_OPTIONS];
@@ -168,7 +168,7 @@ static void options(request *q)
     option_add(o, &n, "high", OPTION_REAL, &q->range.high, "highest velocity, m/s");
     option_add(o, &n, "scan", OPTION_REAL, &q->range.scan, "distance of the first velocities, m/s");
     option_add(o, &n, "step", OPTION_REAL, &q->range.step, "width of the bracket at the end, m/s");
-    option_add(o, &n, "offsets", OPTION_LONG, &q->offsets, "grid offsets: k/N of a cell, k = 0 .. N-1");
+    option_add(o, &n, "offsets", OPTION_INTEGER, &q->offsets, "grid offsets: k/N of a cell, k = 0 .. N-1");
     study_options(&q->s, o, &n);
     q->n = n;
 }

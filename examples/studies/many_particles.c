@@ -10,7 +10,7 @@ static int carry_out(int argc, char **argv)
 {
     static particles_case q;
     double spread = 60, height = 0;
-    long seed = 1;
+    int64_t seed = 1;
     option o[IMPACT_OPTIONS];
     char message[300];
     int n, parsed;
@@ -18,10 +18,10 @@ static int carry_out(int argc, char **argv)
     q.count = 10;
     q.base.substrate_diameter = q.base.time = 0;
     n = particles_options(&q, o);
-    option_add(o, &n, "count", OPTION_LONG, &q.count, "particles, 1 .. 500");
+    option_add(o, &n, "count", OPTION_INTEGER, &q.count, "particles, 1 .. 500");
     option_add(o, &n, "spread", OPTION_REAL, &spread, "width of the region of their centres, um");
     option_add(o, &n, "height", OPTION_REAL, &height, "of that region, um; 0: particles fill a fifth of it");
-    option_add(o, &n, "seed", OPTION_LONG, &seed, "of the places");
+    option_add(o, &n, "seed", OPTION_INTEGER, &seed, "of the places");
     parsed = options_parse(argc, argv,
                            "Particles at random places and heights. --substrate-diameter 0: spread and one particle;\n"
                            "--time 0: the fall from the full height and 40 ns. Writes particles.csv, pairs.csv,\n"

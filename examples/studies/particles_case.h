@@ -11,9 +11,9 @@
 
 typedef struct particles_case {
     impact_case base;            /* of every particle; its gap is not used */
-    long count;
+    int64_t count;
     double center[PARTICLES][3]; /* um, over the substrate's face */
-    long stop_after;             /* steps made now, then a checkpoint; 0: never */
+    int64_t stop_after;          /* steps made now, then a checkpoint; 0: never */
     output out;
 } particles_case;
 
@@ -57,11 +57,11 @@ static inline double particles_extent(const particles_case *q)
 /* Draws centres of particles at least `apart` from each other, in a cylinder that leans by `drift` as they fall. Gives
    up after 200,000 draws: returns 0. */
 static inline int particles_scatter(particles_case *q, double spread, double height, double apart, double drift,
-                                    long seed)
+                                    int64_t seed)
 {
     const double pi = (double)MPM_PI;
     uint64_t state = (uint64_t)seed;
-    long k, other, tries = 0;
+    int64_t k, other, tries = 0;
     for (k = 0; k < q->count; k++) {
         double *x = q->center[k], r, phi, d2;
         do {
@@ -86,18 +86,19 @@ static inline int particles_scatter(particles_case *q, double spread, double hei
    on the substrate; oblique ones start aside, so that they land where they would without the angle. Sets the
    substrate's width (spread and a particle) and the time (the fall and 40 ns) where they are 0. Returns 1, or 0
    with a message. Test: 63_particles. */
-static inline int particles_place(particles_case *q, double spread, double height, long seed, char *message, size_t n)
+static inline int particles_place(particles_case *q, double spread, double height, int64_t seed, char *message,
+                                  size_t n)
 {
     const double apart = particles_extent(q) + q->base.cell, tilt = q->base.angle * (double)MPM_PI / 180;
     const double down = q->base.velocity * cos(tilt), drift = tan(tilt);
     double least = HUGE_VAL;
-    long k;
+    int64_t k;
     if (!(fabs(q->base.substrate_diameter) > 0)) q->base.substrate_diameter = spread + 2 * impact_half_width(&q->base);
     if (!(fabs(q->base.time) > 0)) q->base.time = 1e3 * height / down + 40;
     if (!impact_check(&q->base, message, n)) return 0;
     if (!particles_scatter(q, spread, height, apart, drift, seed)) {
-        snprintf(message, n, "--count %ld: no room for so many at %g um (particle and cell) from centre to centre; "
-                 "larger --spread or --height, or smaller --cell", q->count, apart);
+        snprintf(message, n, "--count %lld: no room for so many at %g um (particle and cell) from centre to centre; "
+                 "larger --spread or --height, or smaller --cell", (long long)q->count, apart);
         return 0;
     }
     for (k = 0; k < q->count; k++) least = fmin(least, q->center[k][2]);
@@ -113,13 +114,13 @@ static inline int particles_mirrored(const particles_case *q, char *message, siz
 {
     const int rings = !strcmp(q->base.geometry, "axisymmetric");
     const int mirrors = rings ? 0 : word_place(IMPACT_SYMMETRIES, q->base.symmetry); /* y = 0, then x = 0 too */
-    long k;
+    int64_t k;
     int a;
     for (k = 0; k < q->count; k++)
         for (a = 0; a < 2; a++)
             if (mirrors >= 2 - a && fabs(q->center[k][a]) > 0 && q->center[k][a] < impact_half_width(&q->base)) {
-                snprintf(message, n, "--symmetry %s: the mirror %c = 0 cuts particle %ld beside its middle",
-                         q->base.symmetry, "xy"[a], k);
+                snprintf(message, n, "--symmetry %s: the mirror %c = 0 cuts particle %lld beside its middle",
+                         q->base.symmetry, "xy"[a], (long long)k);
                 return 0;
             }
     return 1;
@@ -130,7 +131,7 @@ static inline int particles_mirrored(const particles_case *q, char *message, siz
 static inline int particles_begin(impact *s, const particles_case *q, char *message, size_t n)
 {
     impact_case room = q->base; /* one case whose grid holds all */
-    long k;
+    int64_t k;
     memset(s, 0, sizeof *s);
     if (!impact_check(&q->base, message, n)) return 0;
     if (!particles_mirrored(q, message, n)) return 0;
@@ -170,7 +171,7 @@ static const char *const particle_fate_text[PARTICLE_FATES] = {"arriving", "bond
 typedef struct particle_report {
     particle_fate fate;
     mpm_bond_measure bond;  /* of its own points */
-    long nodes;             /* bonded nodes to any other body */
+    int64_t nodes;             /* bonded nodes to any other body */
     double v_z, v_along;    /* of its points up to 60 m/s, from the substrate's mean: up, along the face [m/s] */
     double ejected;         /* share of its mass faster than 60 m/s; 0 on its way down */
     double height;          /* of its centre of mass, um */
@@ -273,7 +274,7 @@ static inline int particles_frame(const impact *s, particles_case *q)
     int32_t *partner = (int32_t *)malloc((size_t)p->count * sizeof *partner), i;
     output_picture picture;
     mpm_io_field field;
-    long k;
+    int64_t k;
     int ok;
     if (!partner) return complain("no memory for output");
     for (i = 0; i < p->count; i++) partner[i] = (int32_t)p->user[s->bond.partner][i] - 1;
@@ -285,8 +286,8 @@ static inline int particles_frame(const impact *s, particles_case *q)
     output_cuts(&q->out, &s->world, q->base.spacing, NULL, &picture);
     output_window(&picture, 1.05 * edge, -1.05 * q->base.substrate_height, 1.05 * top);
     picture.cut[1].title = "bodies";
-    snprintf(picture.title, sizeof picture.title, "%ld x %s, %g um at %g m/s", q->count, q->base.material,
-             q->base.diameter, q->base.velocity);
+    snprintf(picture.title, sizeof picture.title, "%lld x %s, %g um at %g m/s", (long long)q->count,
+             q->base.material, q->base.diameter, q->base.velocity);
     ok = output_frame(&q->out, &s->world, &field, 1, &picture);
     free(partner);
     return ok;
@@ -298,7 +299,7 @@ static inline int particles_table(const particles_case *q, const particle_report
     char path[PATH_BYTES];
     mpm_fault fault;
     mpm_io_csv t;
-    long a;
+    int64_t a;
     int k;
     mpm_io_csv_begin(&t, file_in(q->out.folder, "particles.csv", path, sizeof path),
                      "particle,x_um,y_um,z_um,fate,pbcp_percent,contacted_points,bonded_points,bonded_nodes,"
@@ -371,7 +372,7 @@ static inline int particles_summary(const impact *s, const particles_case *q, co
 {
     const mpm_world *w = &s->world;
     const mpm_totals sums = mpm_body_totals(w, -1);
-    long fates[PARTICLE_FATES] = {0}, a;
+    int64_t fates[PARTICLE_FATES] = {0}, a;
     char path[PATH_BYTES], sum[HASH_DIGITS];
     mpm_fault fault;
     mpm_io_json j;
@@ -400,12 +401,13 @@ static inline int particles_summary(const impact *s, const particles_case *q, co
 
 static inline void particles_print(const particles_case *q, const particle_report *r, const impact *s)
 {
-    const long shown = q->count < 40 ? q->count : 40;
-    long k;
+    const int64_t shown = q->count < 40 ? q->count : 40;
+    int64_t k;
     printf("\n  particle   fate          PBCP %%   bonded nodes   v_z m/s   along m/s   ejected %%\n");
     for (k = 0; k < shown; k++)
-        printf("  %8ld   %-11s   %6.2f   %12ld   %7.2f   %9.2f   %9.1f\n", k, particle_fate_text[r[k].fate],
-               r[k].bond.pbcp, r[k].nodes, r[k].v_z, r[k].v_along, 100 * r[k].ejected);
+        printf("  %8lld   %-11s   %6.2f   %12lld   %7.2f   %9.2f   %9.1f\n", (long long)k,
+               particle_fate_text[r[k].fate], r[k].bond.pbcp, (long long)r[k].nodes, r[k].v_z, r[k].v_along,
+               100 * r[k].ejected);
     printf("\n  PBCP of all surfaces %.2f %%; %s/particles.csv, pairs.csv, summary.json%s\n",
            mpm_bond_measure_body(&s->world, -1).pbcp, q->out.folder, q->out.frames > 0 ? ", particles.pvd" : "");
 }
@@ -438,7 +440,7 @@ static inline int particles_kept(const particles_case *q, long *frames)
     int n = impact_options(&base, o), plain_n = impact_options(&usual, plain), a;
     char path[PATH_BYTES], *row;
     const char *count, *pictures;
-    long k;
+    int64_t k;
     option_drop(o, &n, "gap"); /* by the places of the particles */
     option_drop(plain, &plain_n, "gap");
     text_in(file_in(q->out.folder, "summary.json", path, sizeof path), text, sizeof text);
@@ -609,7 +611,7 @@ static inline int particles_options(particles_case *q, option *o)
     int n = impact_options(&q->base, o);
     option_drop(o, &n, "gap"); /* by the places of the particles */
     output_options(&q->out, o, &n);
-    option_add(o, &n, "stop-after", OPTION_LONG, &q->stop_after,
+    option_add(o, &n, "stop-after", OPTION_INTEGER, &q->stop_after,
                "write a checkpoint after so many steps and stop; 0: never");
     return n;
 }

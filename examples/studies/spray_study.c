@@ -797,8 +797,8 @@ static int write_report(const study *st, const long_run *l, double once, double 
             st->budget, MPM_VERSION, st->time, st->seeds, st->seeds > 1 ? "s" : "", st->data);
     fprintf(f, "| id | the paper says | here | verdict |\n|---|---|---|---|\n");
     row(f, "B-6", "50 050 particles: the run completes; scatter around a dense core",
-        words("%ld injected, %ld deposited, %.3g %% of them within the nozzle's radius, %.3g %% beyond twice that",
-              (long)l->m.injected, (long)l->m.deposited, 100 * l->inside_10mm, 100 * l->beyond_20mm),
+        words("%lld injected, %lld deposited, %.3g %% of them within the nozzle's radius, %.3g %% beyond twice that",
+              (long long)l->m.injected, (long long)l->m.deposited, 100 * l->inside_10mm, 100 * l->beyond_20mm),
         verdict(l->m.injected == 50050 && l->inside_10mm > 0.5 && l->beyond_20mm > 0, 1));
     report_b7(f, st);
     report_b8_b10(f, st);
@@ -811,10 +811,10 @@ static int write_report(const study *st, const long_run *l, double once, double 
     fprintf(f, "## Cost\n\n| what | asked | measured |\n|---|---|---|\n"
                "| the run of 50 050 particles, CPU s | < 120 | %.1f |\n| its memory, MB | < 100 | %.1f |\n"
                "| simulated particle-seconds per CPU second | >= 20 | %.1f |\n"
-               "| iterations that did not converge | - | %ld |\n"
+               "| iterations that did not converge | - | %lld |\n"
                "| ns per particle-step, feed 1e5 /s | - | %.0f |\n"
                "| the same at feed 8e5 /s | < 1.4 times | %.0f, %.2f times |\n",
-            l->cpu, l->megabytes, l->per_second, (long)l->not_converged, once, eightfold, eightfold / once);
+            l->cpu, l->megabytes, l->per_second, (long long)l->not_converged, once, eightfold, eightfold / once);
     if (mpm_io_close(&file, &fault) >= 0) return 0;
     return fprintf(stderr, "error: cannot write %s\n", st->report), -1;
 }

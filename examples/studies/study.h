@@ -122,8 +122,8 @@ static const char *const study_name[STUDY_VALUES] = {STUDY_LIST(STUDY_NAME)};
 typedef struct study {
     const char *folder;     /* finished runs: one file each, in folder/runs */
     int quiet, whole;       /* whole: do not end a run once the particle has left for good */
-    long limit;             /* new runs allowed; < 0: any number */
-    long planned, done, fresh; /* runs: in all (a guess at first), finished, of these made now */
+    int64_t limit;          /* new runs allowed; < 0: any number */
+    int64_t planned, done, fresh; /* runs: in all (a guess at first), finished, of these made now */
     double spent;           /* CPU seconds of the fresh ones */
     char label[80];
     time_t shown;
@@ -141,7 +141,7 @@ static inline study study_of(const char *folder)
 static inline void study_options(study *s, option *o, int *n)
 {
     option_add(o, n, "whole-time", OPTION_FLAG, &s->whole, "do not end a run early when the particle has left");
-    option_add(o, n, "limit", OPTION_LONG, &s->limit, "stop after so many new runs; < 0: never");
+    option_add(o, n, "limit", OPTION_INTEGER, &s->limit, "stop after so many new runs; < 0: never");
     option_add(o, n, "out", OPTION_TEXT, &s->folder, "output folder");
     option_add(o, n, "quiet", OPTION_FLAG, &s->quiet, "no progress line, no table");
 }
@@ -149,7 +149,7 @@ static inline void study_options(study *s, option *o, int *n)
 /* The end of a program: 3 after a message when the study was stopped. */
 static inline int study_stopped(const study *s)
 {
-    printf("stopped after %ld new runs; %ld are done: run again to go on\n", s->fresh, s->done);
+    printf("stopped after %lld new runs; %lld are done: run again to go on\n", (long long)s->fresh, (long long)s->done);
     return 3;
 }
 
@@ -163,8 +163,8 @@ static inline void study_progress(study *s, double part, double seconds)
     if (s->quiet || now == s->shown) return;
     s->shown = now;
     if (left < 0) left = 0;
-    snprintf(line, sizeof line, "run %ld of %ld, %s, %.0f %%, left %.0f:%02d", s->done + 1,
-             s->planned > s->done ? s->planned : s->done + 1, s->label, 100 * part, floor(left / 60),
+    snprintf(line, sizeof line, "run %lld of %lld, %s, %.0f %%, left %.0f:%02d", (long long)s->done + 1,
+             (long long)(s->planned > s->done ? s->planned : s->done + 1), s->label, 100 * part, floor(left / 60),
              (int)fmod(left, 60));
     fprintf(stderr, "\r%-100s", line);
     fflush(stderr);

@@ -11,7 +11,7 @@ static int carry_out(int argc, char **argv)
     static particles_case q;
     const char *leads = "top";
     double offset = 0, height = 30;
-    long top;
+    int64_t top;
     option o[IMPACT_OPTIONS];
     char message[200];
     int n, parsed;

@@ -23,9 +23,9 @@ static calibration calibration_of(grid g, const char *rule_name)
 }
 
 /* The highest Gdot_c of a column of the sweep that bonds a size; 0: none. */
-static double calibration_edge(const calibration *q, const calibration_side *side, long column)
+static double calibration_edge(const calibration *q, const calibration_side *side, int64_t column)
 {
-    long row;
+    int64_t row;
     for (row = q->rows - 1; row >= 0; row--)
         if (side->map.bonds[row * q->columns + column] == 1) return calibration_gdot(q, row * q->columns + column);
     return 0;
@@ -34,7 +34,7 @@ static double calibration_edge(const calibration *q, const calibration_side *sid
 /* A row of the file for each column. */
 static void calibration_record(mpm_io_csv *t, const calibration *q, const calibration_result *r)
 {
-    long column;
+    int64_t column;
     int k;
     for (column = 0; column < q->columns; column++) {
         mpm_io_csv_real(t, (mpm_real)q->base.cell);
@@ -78,12 +78,12 @@ static void say_ridges(work *w, const calibration *q, const calibration_result *
 /* Pairs run at both sizes that bond only one: "3, 0". */
 static void say_only(work *w, const calibration *q, const calibration_result *r)
 {
-    long node, only[2] = {0, 0};
+    int64_t node, only[2] = {0, 0};
     int k;
     for (node = 0; node < calibration_nodes(q); node++)
         for (k = 0; k < 2; k++)
             only[k] += r->side[k].map.bonds[node] == 1 && r->side[1 - k].map.bonds[node] == 0;
-    say(w, "%ld, %ld", only[0], only[1]);
+    say(w, "%lld, %lld", (long long)only[0], (long long)only[1]);
 }
 
 /* A row of the table. */
@@ -91,9 +91,10 @@ static void say_calibration(work *w, const calibration *q, const calibration_res
                             calibration_sum *sum)
 {
     int k;
-    say(w, "| %.3g/%.3g | %s | %ld | %ld, %ld |", q->base.cell, q->base.spacing, q->rule,
-        r->side[0].tests + r->side[1].tests, r->side[0].status >= 0 ? r->side[0].fit.wrong : 0,
-        r->side[1].status >= 0 ? r->side[1].fit.wrong : 0);
+    say(w, "| %.3g/%.3g | %s | %lld | %lld, %lld |", q->base.cell, q->base.spacing, q->rule,
+        (long long)(r->side[0].tests + r->side[1].tests),
+        (long long)(r->side[0].status >= 0 ? r->side[0].fit.wrong : 0),
+        (long long)(r->side[1].status >= 0 ? r->side[1].fit.wrong : 0));
     say_edges(w, q, r, sum);
     say(w, " [%s](data/%s)", r->points ? "crossing" : "none", plot);
     for (k = 0; k < r->points; k++) say(w, "%s%.0f, %.3g", k ? "; " : ": ", r->point[k][0], r->point[k][1]);

@@ -88,7 +88,7 @@ static int options(work *w, int argc, char **argv)
     option_add_word(o, &n, "budget", &w->budget_name, BUDGETS, "how much of it: an hour, nine hours, days");
     option_add(o, &n, "only", OPTION_TEXT, &w->only, "parts that the page then holds: none" PARTS "; empty: all");
     option_add(o, &n, "desk", OPTION_TEXT, &w->desk, "parts that a quick budget runs as desk does");
-    option_add(o, &n, "limit", OPTION_LONG, &w->s.limit, "stop after so many new runs; < 0: never");
+    option_add(o, &n, "limit", OPTION_INTEGER, &w->s.limit, "stop after so many new runs; < 0: never");
     option_add(o, &n, "out", OPTION_TEXT, &w->s.folder, "finished runs, to go on from");
     option_add(o, &n, "data", OPTION_TEXT, &w->data, "folder for tables and plots");
     option_add(o, &n, "page", OPTION_TEXT, &w->page, "the page whose part is replaced");
@@ -112,7 +112,7 @@ static int carry_out(int argc, char **argv)
     status = parts(&w);
     if (status > 0) status = write_page(&w);
     if (status == 0) return !complain(w.message);
-    if (status < 0) printf("stopped after %ld new runs; run again to go on\n", w.s.fresh);
+    if (status < 0) printf("stopped after %lld new runs; run again to go on\n", (long long)w.s.fresh);
     return status < 0 ? 3 : 0;
 }
 

@@ -90,7 +90,7 @@ static int keep_picture(work *w, const particles_case *q, const char *folder, co
     size_t n;
     FILE *in;
     int ok;
-    snprintf(frame, sizeof frame, "frame_%04ld.png", q->out.frames - 1);
+    snprintf(frame, sizeof frame, "frame_%04lld.png", (long long)q->out.frames - 1);
     in = fopen(file_in(folder, frame, from, sizeof from), "rb");
     ok = in && mpm_io_open(&out, data_file(w, name, to, sizeof to), &w->fault) >= 0;
     while (ok && (n = fread(part, 1, sizeof part, in)) > 0) mpm_io_put_bytes(&out, part, n);

@@ -89,7 +89,7 @@ int budget_times(const work *w);
 critical_range budget_range(const work *w);
 
 /* How the coming runs end (1: once the particle has left for good) and about how many they are. */
-void plan(work *w, int early, long runs);
+void plan(work *w, int early, int64_t runs);
 
 /* study_need, on source A's substrate unless the case has one. */
 int need(work *w, impact_case c, double *value);

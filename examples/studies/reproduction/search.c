@@ -34,7 +34,7 @@ critical_range budget_range(const work *w)
     return r;
 }
 
-void plan(work *w, int early, long runs)
+void plan(work *w, int early, int64_t runs)
 {
     w->s.whole = !early;
     w->s.planned = w->s.done + runs;

@@ -8,7 +8,7 @@ cat <<END
 
 Written by \`make verify\`; every section is one program in [tests/verify](../tests/verify). Each row sets what the
 library gives beside an answer that comes from outside it. A row that misses says so and is followed by the reason.
-Contact and walls act in source A's scheme here (`MPM_SCHEME_THESIS`); the consistent one is held by tests/27_schemes.c.
+Contact and walls act in source A's scheme here (\`MPM_SCHEME_THESIS\`); the consistent one is held by tests/27_schemes.c.
 
 $((held + missed)) rows with a tolerance: $held hold, $missed do not.
 

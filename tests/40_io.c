@@ -20,18 +20,7 @@
 #define FOLDER "build/test-io"
 #endif
 
-/* The checks as functions: an argument that writes a file is then evaluated once. */
-static void equal(const char *what, long long got, long long wanted) { CHECK_EQUAL(what, got, wanted); }
-static void holds(const char *what, int condition) { CHECK_TRUE(what, condition); }
-
 /* ---- reading back ---------------------------------------------------------------------------- */
-
-static int exists(const char *path)
-{
-    FILE *in = fopen(path, "rb");
-    if (in) fclose(in);
-    return in != NULL;
-}
 
 static int contains(const char *path, const char *text)
 {
@@ -62,13 +51,7 @@ static int file_is(const char *path, const char *text)
     return same;
 }
 
-static void write_text(const char *path, const char *text)
-{
-    FILE *out = fopen(path, "wb");
-    if (!out) return;
-    fputs(text, out);
-    fclose(out);
-}
+static void write_text(const char *path, const char *text) { write_file(path, text, strlen(text)); }
 
 /* How many entries of a folder end in ".part"; 0 where folders cannot be read. */
 static int parts_in(const char *folder)
@@ -102,39 +85,39 @@ static void test_messages(void)
     char text[160];
     mpm_fault f = {MPM_ERR_ARGUMENT, "spacing", MPM_R(-0.5), 12};
     mpm_io_progress p = {1200, 0, 9900, 9.7, "ns", 5900, 5.9};
-    holds("status text", strcmp(mpm_status_text(MPM_OK), "done") == 0);
-    holds("unknown status", strcmp(mpm_status_text((mpm_status)99), "unknown status") == 0);
+    CHECK_TRUE("status text", strcmp(mpm_status_text(MPM_OK), "done") == 0);
+    CHECK_TRUE("unknown status", strcmp(mpm_status_text((mpm_status)99), "unknown status") == 0);
     mpm_io_fault_text(text, sizeof text, &f);
-    holds("fault text", strcmp(text, "an argument is out of its valid range: spacing = -0.5 "
+    CHECK_TRUE("fault text", strcmp(text, "an argument is out of its valid range: spacing = -0.5 "
                                           "(index 12)") == 0);
-    equal("fault text is cut to fit", (long)mpm_io_fault_text(text, 8, &f), 7);
-    holds("... and terminated", strcmp(text, "an argu") == 0);
-    equal("no room at all", (long)mpm_io_fault_text(text, 0, &f), 0);
+    CHECK_EQUAL("fault text is cut to fit", (long)mpm_io_fault_text(text, 8, &f), 7);
+    CHECK_TRUE("... and terminated", strcmp(text, "an argu") == 0);
+    CHECK_EQUAL("no room at all", (long)mpm_io_fault_text(text, 0, &f), 0);
     f.index = INT64_C(5000000000);
     mpm_io_fault_text(text, sizeof text, &f);
-    holds("a number beyond 32 bits", strstr(text, "(index 5000000000)") != NULL);
+    CHECK_TRUE("a number beyond 32 bits", strstr(text, "(index 5000000000)") != NULL);
     mpm_io_progress_text(text, sizeof text, &p);
-    holds("progress",
-          strcmp(text, "step 1200/9900  12 %  t = 9.7 ns  1.2e6 points/s  left 0:43") == 0);
+    CHECK_TRUE("progress",
+               strcmp(text, "step 1200/9900  12 %  t = 9.7 ns  1.2e6 points/s  left 0:43") == 0);
     p.steps = 2400000;
     mpm_io_progress_text(text, sizeof text, &p);
-    holds("progress, hours", strstr(text, "left 3:16:34") != NULL);
+    CHECK_TRUE("progress, hours", strstr(text, "left 3:16:34") != NULL);
     p.step = 0;
     mpm_io_progress_text(text, sizeof text, &p);
-    holds("progress before the first step", strcmp(text, "step 0/2400000  0 %  t = 9.7 ns") == 0);
+    CHECK_TRUE("progress before the first step", strcmp(text, "step 0/2400000  0 %  t = 9.7 ns") == 0);
     p.step = INT64_C(3000000000);
     p.steps = INT64_C(4000000000);
     mpm_io_progress_text(text, sizeof text, &p);
-    holds("progress beyond 32 bits", strncmp(text, "step 3000000000/4000000000  75 %", 32) == 0);
+    CHECK_TRUE("progress beyond 32 bits", strncmp(text, "step 3000000000/4000000000  75 %", 32) == 0);
     p.step = 2;
     p.steps = 1;
     p.elapsed = 1e300;
     mpm_io_progress_text(text, sizeof text, &p);
-    holds("progress past the end", strncmp(text, "step 2/1  100 %", 15) == 0 && strstr(text, "left 0:00"));
+    CHECK_TRUE("progress past the end", strncmp(text, "step 2/1  100 %", 15) == 0 && strstr(text, "left 0:00"));
     p.step = INT64_MAX;
     p.first_step = INT64_MIN;
     mpm_io_progress_text(text, sizeof text, &p);
-    holds("progress of any counts", strstr(text, "/1  100 %") != NULL && strstr(text, "left 0:00") != NULL);
+    CHECK_TRUE("progress of any counts", strstr(text, "/1  100 %") != NULL && strstr(text, "left 0:00") != NULL);
 }
 
 static void test_numbers(void)
@@ -145,34 +128,36 @@ static void test_numbers(void)
                                         "fr_FR.utf8", "German"};
     char text[40];
     size_t i;
-    int bad = 0, point = 1;
+    int bad = 0, point = 1, locales = 0;
     for (i = 0; i < sizeof values / sizeof values[0]; i++) {
         mpm_io_number_text(text, sizeof text, values[i]);
         if (!(strtod(text, NULL) <= values[i] && strtod(text, NULL) >= values[i])) bad++;
     }
-    equal("numbers that do not come back", bad, 0);
+    CHECK_EQUAL("numbers that do not come back", bad, 0);
     mpm_io_number_text(text, sizeof text, 0.1);
-    holds("0.1 is short", strcmp(text, "0.1") == 0);
+    CHECK_TRUE("0.1 is short", strcmp(text, "0.1") == 0);
     mpm_io_number_text(text, sizeof text, -INFINITY);
-    holds("infinity", strcmp(text, "-inf") == 0);
+    CHECK_TRUE("infinity", strcmp(text, "-inf") == 0);
     mpm_io_number_text(text, sizeof text, NAN);
-    holds("not a number", strcmp(text, "nan") == 0);
+    CHECK_TRUE("not a number", strcmp(text, "nan") == 0);
     strcpy(text, "-1,25e-07");
     mpm_io_decimal_point(text);
-    holds("comma to point", strcmp(text, "-1.25e-07") == 0);
+    CHECK_TRUE("comma to point", strcmp(text, "-1.25e-07") == 0);
     strcpy(text, "3\xd9\xab" "5");
     mpm_io_decimal_point(text);
-    holds("separator of two bytes to point", strcmp(text, "3.5") == 0);
+    CHECK_TRUE("separator of two bytes to point", strcmp(text, "3.5") == 0);
     strcpy(text, "12e+20");
     mpm_io_decimal_point(text);
-    holds("no separator, no change", strcmp(text, "12e+20") == 0);
+    CHECK_TRUE("no separator, no change", strcmp(text, "12e+20") == 0);
     for (i = 0; i < sizeof comma / sizeof comma[0] && point; i++)
         if (setlocale(LC_NUMERIC, comma[i])) {
             mpm_io_number_text(text, sizeof text, 0.1);
             point = strcmp(text, "0.1") == 0;
+            locales++;
         }
     setlocale(LC_NUMERIC, "C");
-    holds("a point under every locale there is", point);
+    if (locales) CHECK_TRUE("a point under every locale there is", point);
+    else printf("skip - a point under a locale that has a comma: none is installed\n");
 }
 
 /* ---- folders and failures ------------------------------------------------------------------ */
@@ -180,12 +165,12 @@ static void test_numbers(void)
 static void test_folders(void)
 {
     mpm_fault f;
-    equal("folder made", mpm_io_make_directory(FOLDER "/a/b/c", NULL), MPM_OK);
-    equal("folder there already", mpm_io_make_directory(FOLDER "/a/b/", NULL), MPM_OK);
+    CHECK_EQUAL("folder made", mpm_io_make_directory(FOLDER "/a/b/c", NULL), MPM_OK);
+    CHECK_EQUAL("folder there already", mpm_io_make_directory(FOLDER "/a/b/", NULL), MPM_OK);
     write_text(FOLDER "/a/file", "x");
-    equal("file in the way", mpm_io_make_directory(FOLDER "/a/file/d", &f), MPM_ERR_FILE);
-    holds("fault names it", strcmp(f.field, "folder path") == 0 && f.status == MPM_ERR_FILE);
-    equal("empty path", mpm_io_make_directory("", &f), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("file in the way", mpm_io_make_directory(FOLDER "/a/file/d", &f), MPM_ERR_FILE);
+    CHECK_TRUE("fault names it", strcmp(f.field, "folder path") == 0 && f.status == MPM_ERR_FILE);
+    CHECK_EQUAL("empty path", mpm_io_make_directory("", &f), MPM_ERR_ARGUMENT);
 }
 
 #ifdef __linux__
@@ -199,19 +184,19 @@ static void test_names(void)
     int k;
     for (k = 0; k < 6; k++) {
         snprintf(path, sizeof path, FOLDER "/names/%s", name[k]);
-        equal(path, mpm_io_make_directory(path, NULL), MPM_OK);
-        holds("... is there, by that name", exists(path));
+        CHECK_EQUAL(path, mpm_io_make_directory(path, NULL), MPM_OK);
+        CHECK_TRUE("... is there, by that name", exists(path));
     }
-    holds("nothing else", !exists(FOLDER "/names/odd") && !exists(FOLDER "/names/Al"));
+    CHECK_TRUE("nothing else", !exists(FOLDER "/names/odd") && !exists(FOLDER "/names/back"));
     strcpy(lengthy, FOLDER "/names");
     while (strlen(lengthy) < 2900) strcat(lengthy, "/0123456789012345678901234567890123456789");
-    equal("a folder whose path has 2900 bytes", mpm_io_make_directory(lengthy, NULL), MPM_OK);
+    CHECK_EQUAL("a folder whose path has 2900 bytes", mpm_io_make_directory(lengthy, NULL), MPM_OK);
     strcat(lengthy, "/impact.json");
-    equal("... and a file in it", mpm_io_csv_begin(&t, lengthy, "a", NULL, NULL), MPM_OK);
-    equal("... is written", mpm_io_csv_end(&t, NULL), MPM_OK);
-    holds("... under its whole name", exists(lengthy));
+    CHECK_EQUAL("... and a file in it", mpm_io_csv_begin(&t, lengthy, "a", NULL, NULL), MPM_OK);
+    CHECK_EQUAL("... is written", mpm_io_csv_end(&t, NULL), MPM_OK);
+    CHECK_TRUE("... under its whole name", exists(lengthy));
     strcat(lengthy, "2");
-    holds("... and no other", !exists(lengthy));
+    CHECK_TRUE("... and no other", !exists(lengthy));
 }
 
 /* A file that is neither followed nor waited for, a disc that is full, descriptors that are used up. */
@@ -224,13 +209,13 @@ static void test_hostile(void)
     int k, status;
     k = system("cd " FOLDER " && rm -f victim keep.csv.part && ln -s victim keep.csv.part && rm -f fifo.csv.part"
                " && mkfifo fifo.csv.part");
-    equal("a link and a FIFO planted", k, 0);
+    CHECK_EQUAL("a link and a FIFO planted", k, 0);
     mpm_io_csv_begin(&t, FOLDER "/fifo.csv", "a", NULL, NULL);
-    equal("a FIFO is not waited for", mpm_io_csv_end(&t, &f), MPM_OK);
+    CHECK_EQUAL("a FIFO is not waited for", mpm_io_csv_end(&t, &f), MPM_OK);
     mpm_io_csv_begin(&t, FOLDER "/keep.csv", "a", NULL, NULL);
     mpm_io_csv_drop(&t);
-    holds("a link is not followed", !exists(FOLDER "/victim"));
-    equal("... and swept away", system("cd " FOLDER " && rm keep.csv.part fifo.csv.part"), 0);
+    CHECK_TRUE("a link is not followed", !exists(FOLDER "/victim"));
+    CHECK_EQUAL("... and swept away", system("cd " FOLDER " && rm keep.csv.part fifo.csv.part"), 0);
     mpm_io_csv_begin(&t, FOLDER "/keep.csv", "a", NULL, NULL);
     signal(SIGXFSZ, SIG_IGN);
     getrlimit(RLIMIT_FSIZE, &usual);
@@ -240,9 +225,9 @@ static void test_hostile(void)
     mpm_io_csv_integer(&t, 1);
     status = mpm_io_csv_end(&t, &f);
     setrlimit(RLIMIT_FSIZE, &usual);
-    equal("disc full", status, MPM_ERR_FILE);
-    holds("untouched on a full disc", file_is(FOLDER "/keep.csv", "precious"));
-    equal("no .part on a full disc", parts_in(FOLDER), 0);
+    CHECK_EQUAL("disc full", status, MPM_ERR_FILE);
+    CHECK_TRUE("untouched on a full disc", file_is(FOLDER "/keep.csv", "precious"));
+    CHECK_EQUAL("no .part on a full disc", parts_in(FOLDER), 0);
 
     mpm_io_pvd_begin(series, &f);
     for (k = 0; k < 10; k++) {
@@ -256,10 +241,11 @@ static void test_hostile(void)
         setrlimit(RLIMIT_NOFILE, &few);
         status = mpm_io_pvd_add(series, "last.vtu", 99, &f);
         setrlimit(RLIMIT_NOFILE, &usual);
-        holds("a series is whole whatever can be opened", contains(series, "p0.vtu") && contains(series, "p9.vtu"));
-        holds("... and says whether it took the frame", (status == MPM_OK) == contains(series, "last.vtu"));
+        CHECK_TRUE("a series is whole whatever can be opened",
+                   contains(series, "p0.vtu") && contains(series, "p9.vtu"));
+        CHECK_TRUE("... and says whether it took the frame", (status == MPM_OK) == contains(series, "last.vtu"));
     }
-    equal("no .part of a series", parts_in(FOLDER), 0);
+    CHECK_EQUAL("no .part of a series", parts_in(FOLDER), 0);
 }
 #endif
 
@@ -274,57 +260,57 @@ static void test_failures(void)
     mpm_fault f;
     const char *nowhere = FOLDER "/missing/file";
     memset(lengthy, 'a', sizeof lengthy - 1);
-    equal("csv nowhere", mpm_io_csv_begin(&t, nowhere, "a", NULL, &f), MPM_ERR_FILE);
-    holds("fault is about the path", strncmp(f.field, "path", 4) == 0);
+    CHECK_EQUAL("csv nowhere", mpm_io_csv_begin(&t, nowhere, "a", NULL, &f), MPM_ERR_FILE);
+    CHECK_TRUE("fault is about the path", strncmp(f.field, "path", 4) == 0);
     mpm_io_csv_integer(&t, 1);
-    equal("csv: the error sticks", mpm_io_csv_end(&t, &f), MPM_ERR_FILE);
-    holds("... and so does its reason", strcmp(f.field, "path: cannot be made") == 0);
-    equal("json nowhere", mpm_io_json_begin(&j, nowhere, &f), MPM_ERR_FILE);
+    CHECK_EQUAL("csv: the error sticks", mpm_io_csv_end(&t, &f), MPM_ERR_FILE);
+    CHECK_TRUE("... and so does its reason", strcmp(f.field, "path: cannot be made") == 0);
+    CHECK_EQUAL("json nowhere", mpm_io_json_begin(&j, nowhere, &f), MPM_ERR_FILE);
     mpm_io_json_number(&j, "a", 1);
-    equal("json: the error sticks", mpm_io_json_end(&j, &f), MPM_ERR_FILE);
-    holds("... and so does its reason", strcmp(f.field, "path: cannot be made") == 0);
-    equal("json without a path", mpm_io_json_begin(&j, "", &f), MPM_ERR_ARGUMENT);
-    equal("... sticks as such", mpm_io_json_end(&j, &f), MPM_ERR_ARGUMENT);
-    holds("... by name", strcmp(f.field, "length of path") == 0);
-    equal("vtu nowhere", mpm_io_vtu(nowhere, &d, &f), MPM_ERR_FILE);
-    equal("pvd nowhere", mpm_io_pvd_add(nowhere, "x.vtu", 0, &f), MPM_ERR_FILE);
-    equal("png nowhere", mpm_io_png(nowhere, c, 1, 1, NULL, &f), MPM_ERR_FILE);
-    equal("checkpoint nowhere", mpm_io_checkpoint_write(nowhere, NULL, NULL, 0, &f), MPM_ERR_FILE);
-    holds("nothing is left", !exists(nowhere) && !exists(FOLDER "/missing"));
-    equal("path too long for any system", mpm_io_png(lengthy, c, 1, 1, NULL, &f), MPM_ERR_FILE);
+    CHECK_EQUAL("json: the error sticks", mpm_io_json_end(&j, &f), MPM_ERR_FILE);
+    CHECK_TRUE("... and so does its reason", strcmp(f.field, "path: cannot be made") == 0);
+    CHECK_EQUAL("json without a path", mpm_io_json_begin(&j, "", &f), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("... sticks as such", mpm_io_json_end(&j, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... by name", strcmp(f.field, "length of path") == 0);
+    CHECK_EQUAL("vtu nowhere", mpm_io_vtu(nowhere, &d, &f), MPM_ERR_FILE);
+    CHECK_EQUAL("pvd nowhere", mpm_io_pvd_add(nowhere, "x.vtu", 0, &f), MPM_ERR_FILE);
+    CHECK_EQUAL("png nowhere", mpm_io_png(nowhere, c, 1, 1, NULL, &f), MPM_ERR_FILE);
+    CHECK_EQUAL("checkpoint nowhere", mpm_io_checkpoint_write(nowhere, NULL, NULL, 0, &f), MPM_ERR_FILE);
+    CHECK_TRUE("nothing is left", !exists(nowhere) && !exists(FOLDER "/missing"));
+    CHECK_EQUAL("path too long for any system", mpm_io_png(lengthy, c, 1, 1, NULL, &f), MPM_ERR_FILE);
 
     mpm_io_make_directory(FOLDER "/taken", NULL); /* a folder has the name: renaming must fail */
-    equal("name taken by a folder", mpm_io_png(FOLDER "/taken", c, 1, 1, NULL, &f), MPM_ERR_FILE);
-    equal("its .part is removed", parts_in(FOLDER), 0);
-    holds("the folder stays", mpm_io_open(&file, FOLDER "/taken/x", &f) == MPM_OK);
+    CHECK_EQUAL("name taken by a folder", mpm_io_png(FOLDER "/taken", c, 1, 1, NULL, &f), MPM_ERR_FILE);
+    CHECK_EQUAL("its .part is removed", parts_in(FOLDER), 0);
+    CHECK_TRUE("the folder stays", mpm_io_open(&file, FOLDER "/taken/x", &f) == MPM_OK);
     mpm_io_drop(&file);
     write_text(FOLDER "/old.csv", "old");
-    equal("a file that was there", mpm_io_open(&file, FOLDER "/old.csv", &f), MPM_OK);
+    CHECK_EQUAL("a file that was there", mpm_io_open(&file, FOLDER "/old.csv", &f), MPM_OK);
     mpm_io_put(&file, "new");
-    equal("... is replaced", mpm_io_close(&file, &f), MPM_OK);
-    holds("... as a whole", file_is(FOLDER "/old.csv", "new"));
+    CHECK_EQUAL("... is replaced", mpm_io_close(&file, &f), MPM_OK);
+    CHECK_TRUE("... as a whole", file_is(FOLDER "/old.csv", "new"));
 
     write_text(FOLDER "/keep.csv", "precious");
     mpm_io_csv_begin(&t, FOLDER "/keep.csv", "a,b", NULL, NULL);
     mpm_io_csv_integer(&t, 1);
-    holds("untouched while writing", file_is(FOLDER "/keep.csv", "precious"));
-    equal("half a row", mpm_io_csv_end(&t, &f), MPM_ERR_ARGUMENT);
-    holds("untouched after failing", file_is(FOLDER "/keep.csv", "precious"));
-    equal("no .part stays", parts_in(FOLDER), 0);
+    CHECK_TRUE("untouched while writing", file_is(FOLDER "/keep.csv", "precious"));
+    CHECK_EQUAL("half a row", mpm_io_csv_end(&t, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("untouched after failing", file_is(FOLDER "/keep.csv", "precious"));
+    CHECK_EQUAL("no .part stays", parts_in(FOLDER), 0);
     mpm_io_csv_begin(&t, FOLDER "/keep.csv", "a,b", NULL, NULL);
     mpm_io_csv_integer(&t, 1);
 #ifdef __linux__
-    equal("a table being written", parts_in(FOLDER), 1);
+    CHECK_EQUAL("a table being written", parts_in(FOLDER), 1);
 #endif
     mpm_io_csv_drop(&t);
-    holds("dropped: untouched", file_is(FOLDER "/keep.csv", "precious"));
-    equal("dropped: no .part stays", parts_in(FOLDER), 0);
+    CHECK_TRUE("dropped: untouched", file_is(FOLDER "/keep.csv", "precious"));
+    CHECK_EQUAL("dropped: no .part stays", parts_in(FOLDER), 0);
     mpm_io_csv_begin(&t, nowhere, "a", NULL, NULL);
     mpm_io_csv_drop(&t); /* one that could not be begun */
-    holds("dropped: nothing is left", !exists(nowhere));
-    equal("a table without columns", mpm_io_csv_begin(&t, FOLDER "/none.csv", NULL, NULL, &f), MPM_ERR_ARGUMENT);
-    equal("... ends as it began", mpm_io_csv_end(&t, &f), MPM_ERR_ARGUMENT);
-    holds("... for the same reason", strcmp(f.field, "columns") == 0 && !exists(FOLDER "/none.csv"));
+    CHECK_TRUE("dropped: nothing is left", !exists(nowhere));
+    CHECK_EQUAL("a table without columns", mpm_io_csv_begin(&t, FOLDER "/none.csv", NULL, NULL, &f), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("... ends as it began", mpm_io_csv_end(&t, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... for the same reason", strcmp(f.field, "columns") == 0 && !exists(FOLDER "/none.csv"));
 }
 
 /* ---- a world ------------------------------------------------------------------------------- */
@@ -404,45 +390,30 @@ static void test_format(void)
     mpm_io_file f;
     mpm_world w;
     mpm_fault fault;
-    equal("a world", make_world(&w), MPM_OK);
-    holds("... that moves", run(&w, 3));
-    equal("a format of one's own", write_xyz(path, &w, &fault), MPM_OK);
-    holds("... with its first line", contains(path, "2432\nProperties=id:I:1:pos:R:3:velo:R:3:temperature:R:1 "
-                                                    "Time=0.0015\n"));
-    equal("... comes back in every number", xyz_differs(path, &w), 0);
-    equal("... nowhere", write_xyz(FOLDER "/missing/file", &w, &fault), MPM_ERR_FILE);
+    CHECK_EQUAL("a world", make_world(&w), MPM_OK);
+    CHECK_TRUE("... that moves", run(&w, 3));
+    CHECK_EQUAL("a format of one's own", write_xyz(path, &w, &fault), MPM_OK);
+    CHECK_TRUE("... with its first line", contains(path, "2432\nProperties=id:I:1:pos:R:3:velo:R:3:temperature:R:1 "
+                                                         "Time=0.0015\n"));
+    CHECK_EQUAL("... comes back in every number", xyz_differs(path, &w), 0);
+    CHECK_EQUAL("... nowhere", write_xyz(FOLDER "/missing/file", &w, &fault), MPM_ERR_FILE);
     mpm_free(&w);
-    equal("a file of bytes", mpm_io_open(&f, FOLDER "/bytes", &fault), MPM_OK);
+    CHECK_EQUAL("a file of bytes", mpm_io_open(&f, FOLDER "/bytes", &fault), MPM_OK);
     mpm_io_put_bytes(&f, three, 3);
     mpm_io_put_bytes(&f, NULL, 0);
     mpm_io_put_number(&f, 1.0 / 3);
-    equal("... is closed", mpm_io_close(&f, &fault), MPM_OK);
-    holds("... and holds them, and a number", contains_bytes(FOLDER "/bytes", "\1\0\2" "0.3333333333333333", 21));
-    equal("closed again", mpm_io_close(&f, &fault), MPM_ERR_FILE);
-    equal("the same file again", mpm_io_open(&f, FOLDER "/bytes", &fault), MPM_OK);
+    CHECK_EQUAL("... is closed", mpm_io_close(&f, &fault), MPM_OK);
+    CHECK_TRUE("... and holds them, and a number", contains_bytes(FOLDER "/bytes", "\1\0\2" "0.3333333333333333", 21));
+    CHECK_EQUAL("closed again", mpm_io_close(&f, &fault), MPM_ERR_FILE);
+    CHECK_EQUAL("the same file again", mpm_io_open(&f, FOLDER "/bytes", &fault), MPM_OK);
     mpm_io_put(&f, "other");
     mpm_io_drop(&f);
     mpm_io_drop(&f); /* harmless */
-    holds("... dropped: as it was", contains_bytes(FOLDER "/bytes", (const char *)three, 3));
-    equal("... without a .part", parts_in(FOLDER), 0);
+    CHECK_TRUE("... dropped: as it was", contains_bytes(FOLDER "/bytes", (const char *)three, 3));
+    CHECK_EQUAL("... without a .part", parts_in(FOLDER), 0);
 }
 
 /* ---- JSON and CSV -------------------------------------------------------------------------- */
-
-/* The number behind a key of a JSON file. */
-static double json_value(const char *path, const char *key)
-{
-    size_t n;
-    unsigned char *data = slurp(path, &n);
-    char quoted[64];
-    const char *found;
-    double value = NAN;
-    snprintf(quoted, sizeof quoted, "\"%s\": ", key);
-    found = data ? strstr((const char *)data, quoted) : NULL;
-    if (found) value = strtod(found + strlen(quoted), NULL);
-    free(data);
-    return value;
-}
 
 static void test_json(void)
 {
@@ -451,7 +422,7 @@ static void test_json(void)
     mpm_fault f;
     double third = 1.0 / 3;
     int k;
-    equal("json begins", mpm_io_json_begin(&j, path, &f), MPM_OK);
+    CHECK_EQUAL("json begins", mpm_io_json_begin(&j, path, &f), MPM_OK);
     mpm_io_json_number(&j, "third", third);
     mpm_io_json_number(&j, "nothing", NAN);
     mpm_io_json_integer(&j, "steps", -9007199254740993LL);
@@ -463,34 +434,34 @@ static void test_json(void)
     mpm_io_json_open(&j, "empty");
     mpm_io_json_close(&j);
     mpm_io_json_string(&j, "last", NULL);
-    equal("json ends", mpm_io_json_end(&j, &f), MPM_OK);
-    equal("... once", mpm_io_json_end(&j, &f), MPM_ERR_FILE);
-    holds("double comes back",
-          json_value(path, "third") >= third && json_value(path, "third") <= third);
-    holds("text", contains(path, "  \"nothing\": null,\n  \"steps\": -9007199254740993,\n"
-                                      "  \"bonded\": true,\n"
-                                      "  \"name\": \"a \\\"b\\\" \\\\ \\u000a \xc2\xb5m\",\n"
-                                      "  \"options\": {\n    \"speed\": 810\n  },\n"
-                                      "  \"empty\": {},\n  \"last\": null\n}\n"));
-    holds("version first", contains(path, "{\n  \"mpm_version\": \"" MPM_VERSION "\",\n"));
+    CHECK_EQUAL("json ends", mpm_io_json_end(&j, &f), MPM_OK);
+    CHECK_EQUAL("... once", mpm_io_json_end(&j, &f), MPM_ERR_FILE);
+    CHECK_TRUE("double comes back",
+               number_in(path, "third") >= third && number_in(path, "third") <= third);
+    CHECK_TRUE("text", contains(path, "  \"nothing\": null,\n  \"steps\": -9007199254740993,\n"
+                                           "  \"bonded\": true,\n"
+                                           "  \"name\": \"a \\\"b\\\" \\\\ \\u000a \xc2\xb5m\",\n"
+                                           "  \"options\": {\n    \"speed\": 810\n  },\n"
+                                           "  \"empty\": {},\n  \"last\": null\n}\n"));
+    CHECK_TRUE("version first", contains(path, "{\n  \"mpm_version\": \"" MPM_VERSION "\",\n"));
     mpm_io_json_begin(&j, path, &f);
     for (k = 0; k < 20; k++) mpm_io_json_open(&j, "deep");
     while (k-- > 0) mpm_io_json_close(&j);
-    equal("twenty objects in each other", mpm_io_json_end(&j, &f), MPM_OK);
+    CHECK_EQUAL("twenty objects in each other", mpm_io_json_end(&j, &f), MPM_OK);
     mpm_io_json_begin(&j, FOLDER "/open.json", &f);
     mpm_io_json_open(&j, "left open");
-    equal("an open object", mpm_io_json_end(&j, &f), MPM_ERR_ARGUMENT);
-    holds("... makes no file", !exists(FOLDER "/open.json") && parts_in(FOLDER) == 0);
+    CHECK_EQUAL("an open object", mpm_io_json_end(&j, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... makes no file", !exists(FOLDER "/open.json") && parts_in(FOLDER) == 0);
     mpm_io_json_begin(&j, path, &f);
     mpm_io_json_string(&j, "k\xe4y", "latin \xe4, cut \xc3, far \xf4\x90\x80\x80, half \xed\xa0\x80, "
                                      "long \xc0\xaf, \x7f\x01");
     mpm_io_json_string(&j, "good", "\xc2\xb5 \xe2\x88\x9a \xf0\x9f\x98\x80");
-    equal("json of bytes that are no text", mpm_io_json_end(&j, &f), MPM_OK);
-    holds("... is UTF-8", contains(path, "\"k\xef\xbf\xbdy\": \"latin \xef\xbf\xbd, cut \xef\xbf\xbd, "
-                                         "far \xef\xbf\xbd"));
-    holds("... and nothing else", !contains(path, "\xed\xa0") && !contains(path, "\xc0\xaf") &&
-                                      contains(path, "\x7f\\u0001\"") &&
-                                      contains(path, "\"\xc2\xb5 \xe2\x88\x9a \xf0\x9f\x98\x80\""));
+    CHECK_EQUAL("json of bytes that are no text", mpm_io_json_end(&j, &f), MPM_OK);
+    CHECK_TRUE("... is UTF-8", contains(path, "\"k\xef\xbf\xbdy\": \"latin \xef\xbf\xbd, cut \xef\xbf\xbd, "
+                                              "far \xef\xbf\xbd"));
+    CHECK_TRUE("... and nothing else", !contains(path, "\xed\xa0") && !contains(path, "\xc0\xaf") &&
+                                           contains(path, "\x7f\\u0001\"") &&
+                                           contains(path, "\"\xc2\xb5 \xe2\x88\x9a \xf0\x9f\x98\x80\""));
 }
 
 static void test_csv(void)
@@ -498,17 +469,17 @@ static void test_csv(void)
     const char *path = FOLDER "/table.csv";
     mpm_io_csv t;
     mpm_real row[2] = {MPM_R(0.1), MPM_R(-3.0)};
-    equal("csv begins", mpm_io_csv_begin(&t, path, "a,b", "why\nso", NULL), MPM_OK);
-    equal("columns", t.columns, 2);
+    CHECK_EQUAL("csv begins", mpm_io_csv_begin(&t, path, "a,b", "why\nso", NULL), MPM_OK);
+    CHECK_EQUAL("columns", t.columns, 2);
     mpm_io_csv_row(&t, row);
     mpm_io_csv_integer(&t, 7);
     mpm_io_csv_text(&t, "a,\"b\"");
     mpm_io_csv_real(&t, (mpm_real)NAN);
     mpm_io_csv_text(&t, "plain");
-    equal("csv ends", mpm_io_csv_end(&t, NULL), MPM_OK);
-    equal("... once", mpm_io_csv_end(&t, NULL), MPM_ERR_FILE);
-    holds("csv text", file_is(path, "# mpm.h " MPM_VERSION ": why so\na,b\n0.1,-3\n"
-                                         "7,\"a,\"\"b\"\"\"\nnan,plain\n"));
+    CHECK_EQUAL("csv ends", mpm_io_csv_end(&t, NULL), MPM_OK);
+    CHECK_EQUAL("... once", mpm_io_csv_end(&t, NULL), MPM_ERR_FILE);
+    CHECK_TRUE("csv text", file_is(path, "# mpm.h " MPM_VERSION ": why so\na,b\n0.1,-3\n"
+                                              "7,\"a,\"\"b\"\"\"\nnan,plain\n"));
 }
 
 /* ---- ParaView ------------------------------------------------------------------------------ */
@@ -534,6 +505,23 @@ static const unsigned char *vtu_array(const unsigned char *file, size_t n, const
     if (start + 8 > n) return NULL;
     memcpy(bytes, file + start, 8);
     return start + 8 + *bytes <= n ? file + start + 8 : NULL;
+}
+
+/* Each point is a cell of its own: cell i holds point i, ends at i + 1, is of VTK's type 1. Returns how many do not. */
+static int cells_differ(const unsigned char *file, size_t n)
+{
+    uint64_t bytes[3];
+    const unsigned char *point = vtu_array(file, n, "connectivity", "Int32", &bytes[0]);
+    const unsigned char *end = vtu_array(file, n, "offsets", "Int32", &bytes[1]);
+    const unsigned char *kind = vtu_array(file, n, "types", "UInt8", &bytes[2]);
+    int bad = 0;
+    int32_t i, next;
+    if (!point || !end || !kind || bytes[0] != 4 * POINTS || bytes[1] != 4 * POINTS || bytes[2] != POINTS) return -1;
+    for (i = 0; i < POINTS; i++) {
+        next = i + 1;
+        bad += memcmp(point + 4 * i, &i, 4) != 0 || memcmp(end + 4 * i, &next, 4) != 0 || kind[i] != 1;
+    }
+    return bad;
 }
 
 static void test_vtu(void)
@@ -568,43 +556,36 @@ static void test_vtu(void)
     d.time = 0.1;
     d.note = "a -- b";
     fields[0].name = "odd \x02\xe4\xef\xbf\xbf \xc2\xb5 ---";
-    equal("vtu of bytes that are no text", mpm_io_vtu(path, &d, &f), MPM_OK);
-    holds("... is valid XML", contains(path, "\"odd \xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd \xc2\xb5 - - -\""));
+    CHECK_EQUAL("vtu of bytes that are no text", mpm_io_vtu(path, &d, &f), MPM_OK);
+    CHECK_TRUE("... is valid XML", contains(path, "\"odd \xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd \xc2\xb5 - - -\""));
     fields[0].name = "temperature";
-    equal("vtu written", mpm_io_vtu(path, &d, &f), MPM_OK);
+    CHECK_EQUAL("vtu written", mpm_io_vtu(path, &d, &f), MPM_OK);
     file = slurp(path, &n);
     a = vtu_array(file, n, "Points", type, &bytes);
-    equal("bytes of points", (long)bytes, (long)(3 * POINTS * sizeof(mpm_real)));
+    CHECK_EQUAL("bytes of points", bytes, 3 * POINTS * sizeof(mpm_real));
+    bad += !a;
     for (i = 0; a && i < 3 * POINTS; i++)
-        bad += memcmp(a + (size_t)i * sizeof(mpm_real), &field_data[i % 3][i / 3],
-                      sizeof(mpm_real)) != 0;
+        bad += memcmp(a + (size_t)i * sizeof(mpm_real), &field_data[i % 3][i / 3], sizeof(mpm_real)) != 0;
     a = vtu_array(file, n, "stress", type, &bytes);
+    CHECK_TRUE("tensor there", a != NULL);
     for (i = 0; a && i < 6 * POINTS; i++)
         bad += memcmp(a + (size_t)i * sizeof(mpm_real), &field_data[3 + vtk_order[i % 6]][i / 6],
                       sizeof(mpm_real)) != 0;
-    holds("tensor there", a != NULL);
     a = vtu_array(file, n, "velocity &lt;m/s&gt;", type, &bytes);
+    CHECK_TRUE("vector there, name escaped", a != NULL);
     for (i = 0; a && i < 3 * POINTS; i++) {
         mpm_real twice = 2 * field_data[i % 3][i / 3];
         bad += memcmp(a + (size_t)i * sizeof(mpm_real), &twice, sizeof(mpm_real)) != 0;
     }
-    holds("vector there, name escaped", a != NULL);
     a = vtu_array(file, n, "flags", "UInt8", &bytes);
     bad += !a || bytes != POINTS || memcmp(a, flags, POINTS) != 0;
     a = vtu_array(file, n, "id", "Int32", &bytes);
     bad += !a || bytes != sizeof ids || memcmp(a, ids, sizeof ids) != 0;
-    holds("data end where the file goes on",
-               a && memcmp(a + sizeof ids, "\n  </AppendedData>", 18) == 0);
-    a = vtu_array(file, n, "offsets", "Int32", &bytes);
-    for (i = 0; a && i < POINTS; i++) {
-        int32_t want = i + 1;
-        bad += memcmp(a + 4 * i, &want, 4) != 0;
-    }
-    a = vtu_array(file, n, "types", "UInt8", &bytes);
-    for (i = 0; a && i < POINTS; i++) bad += a[i] != 1;
-    equal("values that differ", bad, 0);
-    holds("time", contains(path, "Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">0.1<"));
-    holds("comment stays one", contains(path, "<!-- mpm.h " MPM_VERSION " a - - b -->"));
+    CHECK_TRUE("data end where the file goes on", a && memcmp(a + sizeof ids, "\n  </AppendedData>", 18) == 0);
+    bad += cells_differ(file, n);
+    CHECK_EQUAL("values that differ", bad, 0);
+    CHECK_TRUE("time", contains(path, "Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">0.1<"));
+    CHECK_TRUE("comment stays one", contains(path, "<!-- mpm.h " MPM_VERSION " a - - b -->"));
     free(file);
     d.float32 = 1;
     mpm_io_vtu(path, &d, &f);
@@ -614,21 +595,13 @@ static void test_vtu(void)
         float small = (float)field_data[3][i];
         bad += memcmp(a + 4 * i, &small, 4) != 0;
     }
-    equal("float32 values that differ", a ? bad : -1, 0);
+    CHECK_EQUAL("float32 values that differ", a ? bad : -1, 0);
     free(file);
     fields[2].data[4] = NULL;
-    equal("missing component", mpm_io_vtu(path, &d, &f), MPM_ERR_ARGUMENT);
-    holds("fault names it", strcmp(f.field, "data of field") == 0 && f.index == 2);
+    CHECK_EQUAL("missing component", mpm_io_vtu(path, &d, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("fault names it", strcmp(f.field, "data of field") == 0 && f.index == 2);
     d.count = 0;
-    equal("no points", mpm_io_vtu(FOLDER "/empty.vtu", &d, &f), MPM_OK);
-}
-
-static void write_bytes(const char *path, const unsigned char *data, size_t n)
-{
-    FILE *out = fopen(path, "wb");
-    if (!out) return;
-    fwrite(data, 1, n, out);
-    fclose(out);
+    CHECK_EQUAL("no points", mpm_io_vtu(FOLDER "/empty.vtu", &d, &f), MPM_OK);
 }
 
 static void test_pvd(void)
@@ -638,30 +611,30 @@ static void test_pvd(void)
     const char *path = FOLDER "/series.pvd";
     mpm_fault f;
     memset(lengthy, 'n', sizeof lengthy - 1);
-    equal("pvd begins", mpm_io_pvd_begin(path, &f), MPM_OK);
-    equal("first frame", mpm_io_pvd_add(path, "f-000.vtu", 0, &f), MPM_OK);
-    equal("second frame", mpm_io_pvd_add(path, "f-001.vtu", 0.5, &f), MPM_OK);
-    equal("second frame again", mpm_io_pvd_add(path, "f-001.vtu", 0.25, &f), MPM_OK);
-    holds("the series",
-          contains(path, "<Collection>\n"
-                         "    <DataSet timestep=\"0\" part=\"0\" file=\"f-000.vtu\"/>\n"
-                         "    <DataSet timestep=\"0.25\" part=\"0\" file=\"f-001.vtu\"/>\n"
-                         "  </Collection>\n</VTKFile>\n"));
+    CHECK_EQUAL("pvd begins", mpm_io_pvd_begin(path, &f), MPM_OK);
+    CHECK_EQUAL("first frame", mpm_io_pvd_add(path, "f-000.vtu", 0, &f), MPM_OK);
+    CHECK_EQUAL("second frame", mpm_io_pvd_add(path, "f-001.vtu", 0.5, &f), MPM_OK);
+    CHECK_EQUAL("second frame again", mpm_io_pvd_add(path, "f-001.vtu", 0.25, &f), MPM_OK);
+    CHECK_TRUE("the series",
+               contains(path, "<Collection>\n"
+                              "    <DataSet timestep=\"0\" part=\"0\" file=\"f-000.vtu\"/>\n"
+                              "    <DataSet timestep=\"0.25\" part=\"0\" file=\"f-001.vtu\"/>\n"
+                              "  </Collection>\n</VTKFile>\n"));
     remove(FOLDER "/fresh.pvd");
-    equal("a missing one is begun", mpm_io_pvd_add(FOLDER "/fresh.pvd", "x.vtu", 1, &f), MPM_OK);
+    CHECK_EQUAL("a missing one is begun", mpm_io_pvd_add(FOLDER "/fresh.pvd", "x.vtu", 1, &f), MPM_OK);
     write_text(FOLDER "/other.pvd", "<VTKFile>\n");
-    equal("a foreign one is refused", mpm_io_pvd_add(FOLDER "/other.pvd", "x.vtu", 1, &f),
-          MPM_ERR_FILE);
-    holds("... and kept", file_is(FOLDER "/other.pvd", "<VTKFile>\n"));
-    equal("a name that is no name", mpm_io_pvd_add(path, "a\"b", 1, &f), MPM_ERR_ARGUMENT);
-    equal("... nor one of control characters", mpm_io_pvd_add(path, "a\x01", 1, &f), MPM_ERR_ARGUMENT);
-    equal("... nor one that is not UTF-8", mpm_io_pvd_add(path, "a\xe4", 1, &f), MPM_ERR_ARGUMENT);
-    equal("one of 5000 bytes", mpm_io_pvd_add(path, lengthy, 1, &f), MPM_OK);
-    equal("... that is replaced", mpm_io_pvd_add(path, lengthy, 2, &f), MPM_OK);
-    holds("... as others are", contains(path, "timestep=\"2\"") && !contains(path, "timestep=\"1\""));
-    write_bytes(FOLDER "/zero.pvd", zero, sizeof zero - 1);
-    equal("a line that begins with a zero", mpm_io_pvd_add(FOLDER "/zero.pvd", "x.vtu", 1, &f), MPM_ERR_FILE);
-    equal("no .part", parts_in(FOLDER), 0);
+    CHECK_EQUAL("a foreign one is refused", mpm_io_pvd_add(FOLDER "/other.pvd", "x.vtu", 1, &f),
+                MPM_ERR_FILE);
+    CHECK_TRUE("... and kept", file_is(FOLDER "/other.pvd", "<VTKFile>\n"));
+    CHECK_EQUAL("a name that is no name", mpm_io_pvd_add(path, "a\"b", 1, &f), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("... nor one of control characters", mpm_io_pvd_add(path, "a\x01", 1, &f), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("... nor one that is not UTF-8", mpm_io_pvd_add(path, "a\xe4", 1, &f), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("one of 5000 bytes", mpm_io_pvd_add(path, lengthy, 1, &f), MPM_OK);
+    CHECK_EQUAL("... that is replaced", mpm_io_pvd_add(path, lengthy, 2, &f), MPM_OK);
+    CHECK_TRUE("... as others are", contains(path, "timestep=\"2\"") && !contains(path, "timestep=\"1\""));
+    write_file(FOLDER "/zero.pvd", zero, sizeof zero - 1);
+    CHECK_EQUAL("a line that begins with a zero", mpm_io_pvd_add(FOLDER "/zero.pvd", "x.vtu", 1, &f), MPM_ERR_FILE);
+    CHECK_EQUAL("no .part", parts_in(FOLDER), 0);
 }
 
 /* ---- checkpoints --------------------------------------------------------------------------- */
@@ -683,41 +656,41 @@ static void test_checkpoint(void)
     in[0] = mpm_blob_array("a", back, 0, 60, sizeof *back);
     in[1] = mpm_blob_of("steps", &steps_back, sizeof steps_back);
     in[2] = out[2];
-    equal("checkpoint written", mpm_io_checkpoint_write(path, text, out, 3, &f), MPM_OK);
-    equal("checkpoint read, where there is more room", mpm_io_checkpoint_read(path, text, in, 3, &f), MPM_OK);
-    holds("same bits", memcmp(a, back, sizeof a) == 0 && steps_back == 42);
-    equal("as many as were stored", (long)in[0].bytes, (long)sizeof a);
-    holds("the text can be read in the file", contains_bytes(path, text, strlen(text)));
+    CHECK_EQUAL("checkpoint written", mpm_io_checkpoint_write(path, text, out, 3, &f), MPM_OK);
+    CHECK_EQUAL("checkpoint read, where there is more room", mpm_io_checkpoint_read(path, text, in, 3, &f), MPM_OK);
+    CHECK_TRUE("same bits", memcmp(a, back, sizeof a) == 0 && steps_back == 42);
+    CHECK_EQUAL("as many as were stored", (long)in[0].bytes, (long)sizeof a);
+    CHECK_TRUE("the text can be read in the file", contains_bytes(path, text, strlen(text)));
 
     memset(back, 0, sizeof back);
     file = slurp(path, &n);
     for (i = 0; i < n; i++) { /* one bit flipped anywhere */
         file[i] ^= 16;
-        write_bytes(damaged, file, n);
+        write_file(damaged, file, n);
         undetected += mpm_io_checkpoint_read(damaged, text, in, 3, &f) >= 0;
         file[i] ^= 16;
     }
     for (i = 0; i < n; i += 7) { /* cut short */
-        write_bytes(damaged, file, i);
+        write_file(damaged, file, i);
         undetected += mpm_io_checkpoint_read(damaged, text, in, 3, &f) >= 0;
     }
     for (i = 0; i < 50; i++) changed += memcmp(&back[i], "\0\0\0\0\0\0\0\0", sizeof back[i]) != 0;
-    equal("damage not detected", (long)undetected, 0);
-    equal("values changed by a damaged file", (long)changed, 0);
+    CHECK_EQUAL("damage not detected", (long)undetected, 0);
+    CHECK_EQUAL("values changed by a damaged file", (long)changed, 0);
     file[16] ^= 1; /* the version */
-    write_bytes(damaged, file, n);
-    equal("another version", mpm_io_checkpoint_read(damaged, text, in, 3, &f), MPM_ERR_VERSION);
+    write_file(damaged, file, n);
+    CHECK_EQUAL("another version", mpm_io_checkpoint_read(damaged, text, in, 3, &f), MPM_ERR_VERSION);
     file[16] ^= 1;
     file[36] = file[36] == 8 ? 4 : 8; /* the size of reals, or its high byte */
-    write_bytes(damaged, file, n);
-    equal("another real type", mpm_io_checkpoint_read(damaged, text, in, 3, &f), MPM_ERR_VERSION);
+    write_file(damaged, file, n);
+    CHECK_EQUAL("another real type", mpm_io_checkpoint_read(damaged, text, in, 3, &f), MPM_ERR_VERSION);
     free(file);
     in[0].room = sizeof a - 1;
-    equal("too little room", mpm_io_checkpoint_read(path, text, in, 3, &f), MPM_ERR_FILE);
-    holds("fault says so", strcmp(f.field, "name or size of blob differs") == 0 && f.index == 0);
+    CHECK_EQUAL("too little room", mpm_io_checkpoint_read(path, text, in, 3, &f), MPM_ERR_FILE);
+    CHECK_TRUE("fault says so", strcmp(f.field, "name or size of blob differs") == 0 && f.index == 0);
     in[0] = mpm_blob_of("a", back, sizeof back);
-    equal("another size", mpm_io_checkpoint_read(path, text, in, 3, &f), MPM_ERR_FILE);
-    equal("no such file", mpm_io_checkpoint_read(FOLDER "/none", text, in, 3, &f), MPM_ERR_FILE);
+    CHECK_EQUAL("another size", mpm_io_checkpoint_read(path, text, in, 3, &f), MPM_ERR_FILE);
+    CHECK_EQUAL("no such file", mpm_io_checkpoint_read(FOLDER "/none", text, in, 3, &f), MPM_ERR_FILE);
 }
 
 /* A file of another text is told by the first line that differs. */
@@ -739,18 +712,18 @@ static void test_text(void)
     int k;
     used = mpm_io_line(text, sizeof text, used, "material", "al");
     used = mpm_io_line_number(text, sizeof text, used, "dt", 0.001);
-    holds("lines", strcmp(text, "cell 0.5\nmaterial al\ndt 0.001\n") == 0 && used == strlen(text));
-    equal("a line cut to fit", (long)mpm_io_line_number(said, 6, 0, "cell", 0.5), 5);
-    equal("written", mpm_io_checkpoint_write(path, text, &blob, 1, &f), MPM_OK);
-    equal("of the same text", mpm_io_checkpoint_read(path, text, &blob, 1, &f), MPM_OK);
+    CHECK_TRUE("lines", strcmp(text, "cell 0.5\nmaterial al\ndt 0.001\n") == 0 && used == strlen(text));
+    CHECK_EQUAL("a line cut to fit", (long)mpm_io_line_number(said, 6, 0, "cell", 0.5), 5);
+    CHECK_EQUAL("written", mpm_io_checkpoint_write(path, text, &blob, 1, &f), MPM_OK);
+    CHECK_EQUAL("of the same text", mpm_io_checkpoint_read(path, text, &blob, 1, &f), MPM_OK);
     for (k = 0; k < 5; k++) {
         number = 8;
-        equal("of another text", mpm_io_checkpoint_read(path, other[k].text, &blob, 1, &f), MPM_ERR_VERSION);
+        CHECK_EQUAL("of another text", mpm_io_checkpoint_read(path, other[k].text, &blob, 1, &f), MPM_ERR_VERSION);
         mpm_io_fault_text(said, sizeof said, &f);
         snprintf(wanted, sizeof wanted, "a file is of another version, real type or description: %s (index %ld)",
                  other[k].field, other[k].line);
-        holds("... whose line is named", strcmp(said, wanted) == 0);
-        equal("... and nothing is read", number, 8);
+        CHECK_TRUE("... whose line is named", strcmp(said, wanted) == 0);
+        CHECK_EQUAL("... and nothing is read", number, 8);
     }
 }
 
@@ -796,19 +769,19 @@ static void test_counters(void)
     mpm_fault f;
     size_t i;
     int n, k, eight = 0;
-    equal("a world", make_world(&far_on), MPM_OK);
-    equal("another", make_world(&again), MPM_OK);
+    CHECK_EQUAL("a world", make_world(&far_on), MPM_OK);
+    CHECK_EQUAL("another", make_world(&again), MPM_OK);
     n = mpm_blobs(&far_on, blob);
     for (i = 0; i < sizeof counters / sizeof *counters; i++)
         for (k = 0; k < n; k++) eight += !strcmp(blob[k].name, counters[i]) && blob[k].bytes == 8;
-    equal("counters of eight bytes", eight, 5);
+    CHECK_EQUAL("counters of eight bytes", eight, 5);
     far_on.steps = far_on.sorts = INT64_C(5000000000);
     far_on.retired = far_on.notices = far_on.held = INT64_C(6000000000);
-    equal("saved after 5e9 steps", save(path, &far_on), MPM_OK);
-    equal("loaded", load(path, &again, &f), MPM_OK);
-    holds("they are all there", !worlds_differ(&far_on, &again));
-    equal("a step", mpm_step(&again, MPM_R(1e-6)), MPM_OK);
-    equal("... counted", again.steps, INT64_C(5000000001));
+    CHECK_EQUAL("saved after 5e9 steps", save(path, &far_on), MPM_OK);
+    CHECK_EQUAL("loaded", load(path, &again, &f), MPM_OK);
+    CHECK_TRUE("they are all there", !worlds_differ(&far_on, &again));
+    CHECK_EQUAL("a step", mpm_step(&again, MPM_R(1e-6)), MPM_OK);
+    CHECK_EQUAL("... counted", again.steps, INT64_C(5000000001));
     mpm_free(&far_on);
     mpm_free(&again);
 }
@@ -820,42 +793,43 @@ static void test_restart(void)
     char text[4000];
     mpm_world whole, first, second;
     mpm_fault f;
-    equal("a world", make_world(&whole), MPM_OK);
-    equal("a second", make_world(&first), MPM_OK);
-    equal("a third", make_world(&second), MPM_OK);
-    equal("a point less in one", mpm_point_take(&whole, 5), MPM_OK);
-    equal("... and the other", mpm_point_take(&first, 5), MPM_OK);
-    equal("a point of a damped face less in one", mpm_point_take(&whole, whole.body[1].first + 1), MPM_OK);
-    equal("... and the other", mpm_point_take(&first, first.body[1].first + 1), MPM_OK);
-    holds("... whose face is lighter", first.body[1].mass[0] < second.body[1].mass[0]);
-    holds("run in one", run(&whole, 60));
-    holds("run to half", run(&first, 31));
-    holds("they differ", worlds_differ(&whole, &first));
-    equal("saved", save(path, &first), MPM_OK);
-    equal("loaded", load(path, &second, &f), MPM_OK);
-    holds("run on", run(&second, 29));
-    equal("steps", second.steps, whole.steps);
-    holds("bodies have met", whole.ledger.contact > 0);
-    holds("the damper works", whole.ledger.absorbed > 0);
-    holds("same bits in everything", !worlds_differ(&whole, &second));
+    CHECK_EQUAL("a world", make_world(&whole), MPM_OK);
+    CHECK_EQUAL("a second", make_world(&first), MPM_OK);
+    CHECK_EQUAL("a third", make_world(&second), MPM_OK);
+    CHECK_EQUAL("a point less in one", mpm_point_take(&whole, 5), MPM_OK);
+    CHECK_EQUAL("... and the other", mpm_point_take(&first, 5), MPM_OK);
+    CHECK_EQUAL("a point of a damped face less in one", mpm_point_take(&whole, whole.body[1].first + 1), MPM_OK);
+    CHECK_EQUAL("... and the other", mpm_point_take(&first, first.body[1].first + 1), MPM_OK);
+    CHECK_TRUE("... whose face is lighter", first.body[1].mass[0] < second.body[1].mass[0]);
+    CHECK_TRUE("run in one", run(&whole, 60));
+    CHECK_TRUE("run to half", run(&first, 31));
+    CHECK_TRUE("they differ", worlds_differ(&whole, &first));
+    CHECK_EQUAL("saved", save(path, &first), MPM_OK);
+    CHECK_EQUAL("loaded", load(path, &second, &f), MPM_OK);
+    CHECK_TRUE("run on", run(&second, 29));
+    CHECK_EQUAL("steps", second.steps, whole.steps);
+    CHECK_TRUE("bodies have met", whole.ledger.contact > 0);
+    CHECK_TRUE("the damper works", whole.ledger.absorbed > 0);
+    CHECK_TRUE("same bits in everything", !worlds_differ(&whole, &second));
     mpm_io_body_numbers(&whole, numbers);
-    equal("number of the first point", numbers[0], 0);
-    equal("last of the first body", numbers[whole.body[1].first - 1], 0);
-    equal("first of the second body", numbers[whole.body[1].first], 1);
+    CHECK_EQUAL("number of the first point", numbers[0], 0);
+    CHECK_EQUAL("last of the first body", numbers[whole.body[1].first - 1], 0);
+    CHECK_EQUAL("first of the second body", numbers[whole.body[1].first], 1);
 
-    holds("the text fits well", mpm_io_world_text(text, sizeof text, &second) < 1500 + 2 * 800);
-    holds("... and speaks of the grid", strstr(text, "\ncells 12 12 12\nside open open open open open open\n") != NULL);
+    CHECK_TRUE("the text fits well", mpm_io_world_text(text, sizeof text, &second) < 1500 + 2 * 800);
+    CHECK_TRUE("... and speaks of the grid",
+               strstr(text, "\ncells 12 12 12\nside open open open open open open\n") != NULL);
     second.body[1].desc.density = 2;
-    equal("another density", load(path, &second, &f), MPM_ERR_VERSION);
-    holds("... is named", strncmp(f.field, "body 1 density 2\n", 17) == 0);
+    CHECK_EQUAL("another density", load(path, &second, &f), MPM_ERR_VERSION);
+    CHECK_TRUE("... is named", strncmp(f.field, "body 1 density 2\n", 17) == 0);
     second.body[1].desc.density = 1;
     second.desc.contact.friction = MPM_R(0.5);
-    equal("another friction", load(path, &second, &f), MPM_ERR_VERSION);
-    holds("... is named", strncmp(f.field, "contact.friction 0.5\n", 21) == 0);
+    CHECK_EQUAL("another friction", load(path, &second, &f), MPM_ERR_VERSION);
+    CHECK_TRUE("... is named", strncmp(f.field, "contact.friction 0.5\n", 21) == 0);
     second.desc.contact.friction = 0;
     second.desc.scheme = (mpm_scheme)(MPM_SCHEMES - 1 - (int)second.desc.scheme);
-    equal("another scheme", load(path, &second, &f), MPM_ERR_VERSION);
-    holds("... is named", strncmp(f.field, "scheme ", 7) == 0);
+    CHECK_EQUAL("another scheme", load(path, &second, &f), MPM_ERR_VERSION);
+    CHECK_TRUE("... is named", strncmp(f.field, "scheme ", 7) == 0);
     mpm_free(&whole);
     mpm_free(&first);
     mpm_free(&second);
@@ -890,14 +864,14 @@ static void test_room(void)
     mpm_fault f;
     size_t used[3];
     int d, k;
-    equal("a world", make_world(&w), MPM_OK);
-    equal("a rule", mpm_contact_set(&w, 0, 1, &rule), MPM_OK);
-    equal("another", mpm_contact_set(&w, 0, -1, &rule), MPM_OK);
-    equal("saved with its rules", save(FOLDER "/rules.mpm", &w), MPM_OK);
-    equal("... and loaded", load(FOLDER "/rules.mpm", &w, &f), MPM_OK);
+    CHECK_EQUAL("a world", make_world(&w), MPM_OK);
+    CHECK_EQUAL("a rule", mpm_contact_set(&w, 0, 1, &rule), MPM_OK);
+    CHECK_EQUAL("another", mpm_contact_set(&w, 0, -1, &rule), MPM_OK);
+    CHECK_EQUAL("saved with its rules", save(FOLDER "/rules.mpm", &w), MPM_OK);
+    CHECK_EQUAL("... and loaded", load(FOLDER "/rules.mpm", &w, &f), MPM_OK);
     w.rule[1].contact.friction = MPM_R(0.25);
-    equal("with another rule", load(FOLDER "/rules.mpm", &w, &f), MPM_ERR_VERSION);
-    holds("... it is named", strncmp(f.field, "rule 1 contact.friction 0.25\n", 29) == 0);
+    CHECK_EQUAL("with another rule", load(FOLDER "/rules.mpm", &w, &f), MPM_ERR_VERSION);
+    CHECK_TRUE("... it is named", strncmp(f.field, "rule 1 contact.friction 0.25\n", 29) == 0);
     lengthen_contact(&w.desc.contact, longest);
     for (k = 0; k < 2; k++) lengthen_contact(&w.rule[k].contact, longest);
     for (k = 0; k < 2; k++) lengthen_body(&w.body[k].desc, longest);
@@ -912,9 +886,9 @@ static void test_room(void)
     w.rules = 0;
     used[0] = mpm_io_world_text(text, sizeof text, &w);
     w.bodies = w.rules = 2;
-    holds("the longest head fits", used[0] > 450 && used[0] < 1500);
-    holds("... rules", used[1] - used[0] > 2 * 150 && used[1] - used[0] < 2 * (300 - 6 * 9));
-    holds("... and bodies, of numbers of ten digits too", used[2] - used[1] < 2 * (900 - 15 * 9));
+    CHECK_TRUE("the longest head fits", used[0] > 450 && used[0] < 1500);
+    CHECK_TRUE("... rules", used[1] - used[0] > 2 * 150 && used[1] - used[0] < 2 * (300 - 6 * 9));
+    CHECK_TRUE("... and bodies, of numbers of ten digits too", used[2] - used[1] < 2 * (900 - 15 * 9));
     printf("# %d, %d a rule, %d a body\n", (int)used[0], (int)(used[1] - used[0]) / 2, (int)(used[2] - used[1]) / 2);
     mpm_free(&w);
 }
@@ -966,12 +940,12 @@ static void test_crafted(void)
     mpm_fault f;
     int k;
     for (k = 0; k < 10; k++) {
-        equal("a crafted file", write_crafted(path, k), MPM_OK);
-        equal("a world to go on", make_world(&w), MPM_OK);
-        equal("... refuses it", load(path, &w, &f), MPM_ERR_ARGUMENT);
-        holds("... by name", strcmp(f.field, crafted[k]) == 0);
-        holds("... is left without points", w.points.count == 0 && w.body[0].count == 0 && w.body[1].active == 0);
-        equal("... and steps", mpm_step(&w, MPM_R(0.0005)), MPM_OK);
+        CHECK_EQUAL("a crafted file", write_crafted(path, k), MPM_OK);
+        CHECK_EQUAL("a world to go on", make_world(&w), MPM_OK);
+        CHECK_EQUAL("... refuses it", load(path, &w, &f), MPM_ERR_ARGUMENT);
+        CHECK_TRUE("... by name", strcmp(f.field, crafted[k]) == 0);
+        CHECK_TRUE("... is left without points", w.points.count == 0 && w.body[0].count == 0 && w.body[1].active == 0);
+        CHECK_EQUAL("... and steps", mpm_step(&w, MPM_R(0.0005)), MPM_OK);
         mpm_free(&w);
     }
 }
@@ -1001,31 +975,31 @@ static void test_png(void)
     mpm_fault f;
     size_t n, i;
     int x, y;
-    holds("crc of 123456789, by the reader", crc_bitwise((const unsigned char *)"123456789", 9) == 0xcbf43926u);
-    holds("adler of Wikipedia, by the reader", adler((const unsigned char *)"Wikipedia", 9) == 0x11e60398u);
-    equal("a picture without width", mpm_io_png(path, pixels, 0, 5, NULL, &f), MPM_ERR_ARGUMENT);
-    holds("... is named", strcmp(f.field, "width of picture") == 0);
-    equal("a picture too high", mpm_io_png(path, pixels, 1, 16385, NULL, &f), MPM_ERR_ARGUMENT);
-    equal("no pixels", mpm_io_png(path, NULL, 1, 1, NULL, &f), MPM_ERR_ARGUMENT);
-    holds("... are named", strncmp(f.field, "pixels", 6) == 0);
+    CHECK_TRUE("crc of 123456789, by the reader", crc_bitwise((const unsigned char *)"123456789", 9) == 0xcbf43926u);
+    CHECK_TRUE("adler of Wikipedia, by the reader", adler((const unsigned char *)"Wikipedia", 9) == 0x11e60398u);
+    CHECK_EQUAL("a picture without width", mpm_io_png(path, pixels, 0, 5, NULL, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... is named", strcmp(f.field, "width of picture") == 0);
+    CHECK_EQUAL("a picture too high", mpm_io_png(path, pixels, 1, 16385, NULL, &f), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("no pixels", mpm_io_png(path, NULL, 1, 1, NULL, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... are named", strncmp(f.field, "pixels", 6) == 0);
     for (i = 0; i < (size_t)20 * 10 * 3; i++) pixels[i] = (unsigned char)(i % 60 < 30 ? 255 : i / 60 * 20);
-    holds("a small picture comes back", comes_back(path, pixels, 20, 10));
-    holds("its note is kept", contains_bytes(path, "iTXtDescription\0\0\0\0\0a note", 26));
+    CHECK_TRUE("a small picture comes back", comes_back(path, pixels, 20, 10));
+    CHECK_TRUE("its note is kept", contains_bytes(path, "iTXtDescription\0\0\0\0\0a note", 26));
     memset(lengthy, 'n', sizeof lengthy - 1);
     memcpy(lengthy + 995, "\xc2\xb5\xe4", 3);
-    equal("a note of 3000 bytes", mpm_io_png(path, pixels, 20, 10, lengthy, &f), MPM_OK);
-    holds("... is whole and UTF-8", contains_bytes(path, "n\xc2\xb5\xef\xbf\xbdnnnn", 10));
+    CHECK_EQUAL("a note of 3000 bytes", mpm_io_png(path, pixels, 20, 10, lengthy, &f), MPM_OK);
+    CHECK_TRUE("... is whole and UTF-8", contains_bytes(path, "n\xc2\xb5\xef\xbf\xbdnnnn", 10));
     rgb = read_png(path, &x, &y); /* checks the sums */
-    holds("... in a picture that reads", rgb && x == 20 && y == 10);
+    CHECK_TRUE("... in a picture that reads", rgb && x == 20 && y == 10);
     free(rgb);
-    holds("a single pixel comes back", comes_back(path, pixels, 1, 1));
+    CHECK_TRUE("a single pixel comes back", comes_back(path, pixels, 1, 1));
 
     for (i = 0; i < (size_t)333 * 257 * 3; i++) pixels[i] = (unsigned char)(random_next() >> 12);
-    holds("noise comes back", comes_back(path, pixels, 333, 257));
+    CHECK_TRUE("noise comes back", comes_back(path, pixels, 333, 257));
     for (i = 0; i < (size_t)333 * 257 * 3; i++) /* repeats at many distances, rare symbols */
         pixels[i] = (unsigned char)(random_next() % 50 ? pixels[i > 4000 ? i - random_next() % 4000 : 0]
                                                         : (random_next() & random_next()));
-    holds("patterns come back", comes_back(path, pixels, 333, 257));
+    CHECK_TRUE("patterns come back", comes_back(path, pixels, 333, 257));
 
     for (y = 0; y < HIGH; y++) /* discs of one colour each */
         for (x = 0; x < WIDE; x++) {
@@ -1034,9 +1008,9 @@ static void test_png(void)
                 pixels[3 * (WIDE * (size_t)y + (size_t)x) + i] =
                     (unsigned char)(inside ? 20 * (x / 120) + 10 * (y / 90) * (int)i : 255);
         }
-    holds("a large picture comes back", comes_back(path, pixels, WIDE, HIGH));
+    CHECK_TRUE("a large picture comes back", comes_back(path, pixels, WIDE, HIGH));
     free(slurp(path, &n));
-    holds("1200 x 900 of flat areas in under 60 kB", n < 60000);
+    CHECK_TRUE("1200 x 900 of flat areas in under 60 kB", n < 60000);
 }
 
 int main(void)

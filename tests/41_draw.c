@@ -13,10 +13,6 @@
 #define FOLDER "build/test-draw"
 #endif
 
-/* The checks as functions: an argument that draws is then evaluated once. */
-static void equal(const char *what, long got, long wanted) { CHECK_EQUAL(what, got, wanted); }
-static void holds(const char *what, int condition) { CHECK_TRUE(what, condition); }
-
 static int png_matches(const char *path, const mpm_draw_canvas *c)
 {
     int width = 0, height = 0, same;
@@ -34,16 +30,16 @@ static void test_canvas(void)
     static unsigned char own[4 * 20 * 10];
     mpm_draw_canvas c;
     mpm_fault f;
-    equal("canvas too large", mpm_draw_canvas_init(&c, 16385, 1, NULL, 0), MPM_ERR_ARGUMENT);
-    equal("canvas without pixels", (long)mpm_draw_canvas_bytes(0, 5), 0);
-    equal("memory too small", mpm_draw_canvas_init(&c, 20, 10, own, sizeof own - 1), MPM_ERR_MEMORY);
-    equal("canvas in own memory", mpm_draw_canvas_init(&c, 20, 10, own, sizeof own), MPM_OK);
+    CHECK_EQUAL("canvas too large", mpm_draw_canvas_init(&c, 16385, 1, NULL, 0), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("canvas without pixels", (long)mpm_draw_canvas_bytes(0, 5), 0);
+    CHECK_EQUAL("memory too small", mpm_draw_canvas_init(&c, 20, 10, own, sizeof own - 1), MPM_ERR_MEMORY);
+    CHECK_EQUAL("canvas in own memory", mpm_draw_canvas_init(&c, 20, 10, own, sizeof own), MPM_OK);
     mpm_draw_line(&c, 1, 1, 19, 9, 1.5, 0xff0000);
-    equal("written", mpm_io_png(FOLDER "/line.png", c.rgb, c.width, c.height, "a note", &f), MPM_OK);
-    holds("... and back", png_matches(FOLDER "/line.png", &c));
-    equal("a pixel outside", mpm_draw_pixel(&c, 20, 0), 0);
+    CHECK_EQUAL("written", mpm_io_png(FOLDER "/line.png", c.rgb, c.width, c.height, "a note", &f), MPM_OK);
+    CHECK_TRUE("... and back", png_matches(FOLDER "/line.png", &c));
+    CHECK_EQUAL("a pixel outside", mpm_draw_pixel(&c, 20, 0), 0);
     mpm_draw_canvas_free(&c);
-    equal("freed: no pixels", mpm_draw_pixel(&c, 0, 0), 0);
+    CHECK_EQUAL("freed: no pixels", mpm_draw_pixel(&c, 0, 0), 0);
     mpm_draw_canvas_free(&c);
 }
 
@@ -63,9 +59,9 @@ static void test_drawing(void)
     int x, y, k;
     mpm_draw_canvas_init(&c, 200, 100, NULL, 0);
     mpm_draw_rectangle(&c, 10, 20, 30, 5, 0x123456);
-    equal("pixels of a rectangle", darkness(&c, 0, 0, 200, 100), 150);
-    equal("its colour", mpm_draw_pixel(&c, 39, 24), 0x123456);
-    equal("beside it", mpm_draw_pixel(&c, 40, 24), 0xffffff);
+    CHECK_EQUAL("pixels of a rectangle", darkness(&c, 0, 0, 200, 100), 150);
+    CHECK_EQUAL("its colour", mpm_draw_pixel(&c, 39, 24), 0x123456);
+    CHECK_EQUAL("beside it", mpm_draw_pixel(&c, 40, 24), 0xffffff);
     mpm_draw_fill(&c, 0xffffff);
     mpm_draw_disc(&c, 100, 50, 30, 0);
     for (y = 0; y < 100; y++)
@@ -74,7 +70,7 @@ static void test_drawing(void)
     mpm_draw_fill(&c, 0xffffff);
     mpm_draw_disc(&c, -1e30, NAN, 1e30, 0);
     mpm_draw_line(&c, -1e9, 50.5, 1e9, 50.5, 1, 0);
-    equal("a line far beyond the edges", mpm_draw_pixel(&c, 100, 50), 0);
+    CHECK_EQUAL("a line far beyond the edges", mpm_draw_pixel(&c, 100, 50), 0);
     mpm_draw_fill(&c, 0xffffff);
     for (k = 0; k < 95; k++) every[k] = (char)(32 + k);
     every[95] = 0;
@@ -86,7 +82,7 @@ static void test_drawing(void)
         if (darkness(&c, 0, 0, 200, 100) == 0) break;
         if (darkness(&c, 0, 0, 46, 100) > 0 || darkness(&c, 0, 0, 200, 35) > 0) break;
     }
-    equal("every character leaves ink in its place", k, 95);
+    CHECK_EQUAL("every character leaves ink in its place", k, 95);
     CHECK_NEAR("micro is one character", mpm_draw_text_width(9, "\xc2\xb5"),
                mpm_draw_text_width(9, "u"), 1e-9);
     CHECK_NEAR("broken text ends", mpm_draw_text_width(9, "\xe2"), mpm_draw_text_width(9, "\x80"),
@@ -128,11 +124,11 @@ static void test_colours(void)
         if (off > turn) turn = off;
     }
     CHECK_NEAR("DIVERGING: both sides as light", turn, 0, 3);
-    equal("clamped below", mpm_draw_map_color(MPM_DRAW_DEEP, -5), mpm_draw_map_color(MPM_DRAW_DEEP, 0));
-    equal("clamped above", mpm_draw_map_color(MPM_DRAW_DEEP, 5), mpm_draw_map_color(MPM_DRAW_DEEP, 1));
-    holds("neighbouring series differ", mpm_draw_series_color(0) != mpm_draw_series_color(1));
-    equal("the ninth series is the first", mpm_draw_series_color(8), mpm_draw_series_color(0));
-    equal("not a number is grey", mpm_draw_map_color(MPM_DRAW_DEEP, NAN), 0x9aa0a6);
+    CHECK_EQUAL("clamped below", mpm_draw_map_color(MPM_DRAW_DEEP, -5), mpm_draw_map_color(MPM_DRAW_DEEP, 0));
+    CHECK_EQUAL("clamped above", mpm_draw_map_color(MPM_DRAW_DEEP, 5), mpm_draw_map_color(MPM_DRAW_DEEP, 1));
+    CHECK_TRUE("neighbouring series differ", mpm_draw_series_color(0) != mpm_draw_series_color(1));
+    CHECK_EQUAL("the ninth series is the first", mpm_draw_series_color(8), mpm_draw_series_color(0));
+    CHECK_EQUAL("not a number is grey", mpm_draw_map_color(MPM_DRAW_DEEP, NAN), 0x9aa0a6);
 }
 
 /* ---- figures ------------------------------------------------------------------------------- */
@@ -177,36 +173,36 @@ static void test_cut(void)
     int left;
     memcpy(d.window, window, sizeof window);
     mpm_draw_canvas_init(&c, 432, 432, NULL, 0); /* the frame: 400 pixels wide, 4 to a unit */
-    equal("cut", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f), MPM_OK);
-    equal("upper body at its place", mpm_draw_pixel(&c, 216 + 80, 216 - 80), high);
-    equal("lower body at its place", mpm_draw_pixel(&c, 216 + 80, 216 + 80), low);
-    equal("nothing on the other side", mpm_draw_pixel(&c, 216 - 80, 216 + 80), 0xffffff);
-    equal("nothing outside the bodies", mpm_draw_pixel(&c, 216 + 80, 216 - 175), 0xffffff);
-    holds("a line between the bodies", mpm_draw_pixel(&c, 216 + 80, 216) != low &&
-                                                mpm_draw_pixel(&c, 216 + 80, 216) != high);
-    equal("the surface within a spacing", mpm_draw_pixel(&c, 216 + 80, 216 - 164), 0xffffff);
+    CHECK_EQUAL("cut", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f), MPM_OK);
+    CHECK_EQUAL("upper body at its place", mpm_draw_pixel(&c, 216 + 80, 216 - 80), high);
+    CHECK_EQUAL("lower body at its place", mpm_draw_pixel(&c, 216 + 80, 216 + 80), low);
+    CHECK_EQUAL("nothing on the other side", mpm_draw_pixel(&c, 216 - 80, 216 + 80), 0xffffff);
+    CHECK_EQUAL("nothing outside the bodies", mpm_draw_pixel(&c, 216 + 80, 216 - 175), 0xffffff);
+    CHECK_TRUE("a line between the bodies", mpm_draw_pixel(&c, 216 + 80, 216) != low &&
+                                                     mpm_draw_pixel(&c, 216 + 80, 216) != high);
+    CHECK_EQUAL("the surface within a spacing", mpm_draw_pixel(&c, 216 + 80, 216 - 164), 0xffffff);
     d.mirror = 1;
     d.style = MPM_DRAW_NEAREST;
     mpm_draw_fill(&c, 0xffffff);
-    equal("mirrored cut", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f), MPM_OK);
-    equal("the other half", mpm_draw_pixel(&c, 216 - 80, 216 + 80), low);
+    CHECK_EQUAL("mirrored cut", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f), MPM_OK);
+    CHECK_EQUAL("the other half", mpm_draw_pixel(&c, 216 - 80, 216 + 80), low);
     for (left = 0;
          left < 216 && mpm_draw_pixel(&c, 215 - left, 100) == mpm_draw_pixel(&c, 216 + left, 100);)
         left++;
-    equal("pixels that mirror each other, up to the frame", left, 199);
+    CHECK_EQUAL("pixels that mirror each other, up to the frame", left, 199);
     d.at = 5;
     mpm_draw_fill(&c, 0xffffff);
     mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f);
-    equal("the other layer, clamped", mpm_draw_pixel(&c, 216 + 80, 216 + 80),
-          mpm_draw_map_color(MPM_DRAW_DEEP, 1));
+    CHECK_EQUAL("the other layer, clamped", mpm_draw_pixel(&c, 216 + 80, 216 + 80),
+                mpm_draw_map_color(MPM_DRAW_DEEP, 1));
     d.at = 2.5;
-    equal("no points in the slab", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f),
-          MPM_ERR_ARGUMENT);
-    holds("fault names it", strcmp(f.field, "points in the slab") == 0);
+    CHECK_EQUAL("no points in the slab", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f),
+                MPM_ERR_ARGUMENT);
+    CHECK_TRUE("fault names it", strcmp(f.field, "points in the slab") == 0);
     d.at = 0;
     d.spacing = 0;
-    equal("no spacing", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f), MPM_ERR_ARGUMENT);
-    holds("fault names it", strcmp(f.field, "spacing") == 0);
+    CHECK_EQUAL("no spacing", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("fault names it", strcmp(f.field, "spacing") == 0);
     mpm_draw_canvas_free(&c);
 
     panels[0] = make_cut();
@@ -219,23 +215,23 @@ static void test_cut(void)
     panels[1].map = MPM_DRAW_HEAT;
     panels[1].ticks = 1;
     panels[1].value = NULL;
-    equal("two cuts beside each other", mpm_draw_cuts(&c, panels, 2, 2, 400, &f), MPM_OK);
-    equal("... each of its width", c.width, 800);
-    holds("... and as high as the window asks for", c.height > 440 && c.height < 520);
-    holds("... with ink in both halves",
-          darkness(&c, 0, 0, 400, c.height) > 20000 && darkness(&c, 400, 0, 800, c.height) > 20000);
-    equal("... into a file", mpm_io_png(FOLDER "/cut.png", c.rgb, c.width, c.height, "two bodies", &f), MPM_OK);
-    holds("... and back", png_matches(FOLDER "/cut.png", &c));
+    CHECK_EQUAL("two cuts beside each other", mpm_draw_cuts(&c, panels, 2, 2, 400, &f), MPM_OK);
+    CHECK_EQUAL("... each of its width", c.width, 800);
+    CHECK_TRUE("... and as high as the window asks for", c.height > 440 && c.height < 520);
+    CHECK_TRUE("... with ink in both halves",
+               darkness(&c, 0, 0, 400, c.height) > 20000 && darkness(&c, 400, 0, 800, c.height) > 20000);
+    CHECK_EQUAL("... into a file", mpm_io_png(FOLDER "/cut.png", c.rgb, c.width, c.height, "two bodies", &f), MPM_OK);
+    CHECK_TRUE("... and back", png_matches(FOLDER "/cut.png", &c));
     mpm_draw_canvas_free(&c);
     panels[0].window[0] = -2;
     panels[0].window[1] = panels[0].window[3] = 2;
     panels[0].at = 99;
-    equal("a window given, and nothing in it", mpm_draw_cuts(&c, panels, 1, 1, 400, &f), MPM_ERR_ARGUMENT);
-    holds("... is said", strcmp(f.field, "points in the slab") == 0);
+    CHECK_EQUAL("a window given, and nothing in it", mpm_draw_cuts(&c, panels, 1, 1, 400, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... is said", strcmp(f.field, "points in the slab") == 0);
     panels[0] = make_cut();
-    equal("no panels", mpm_draw_cuts(&c, panels, 0, 2, 400, &f), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("no panels", mpm_draw_cuts(&c, panels, 0, 2, 400, &f), MPM_ERR_ARGUMENT);
     panels[1].spacing = 0;
-    equal("a panel without spacing", mpm_draw_cuts(&c, panels, 2, 2, 400, &f), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("a panel without spacing", mpm_draw_cuts(&c, panels, 2, 2, 400, &f), MPM_ERR_ARGUMENT);
 }
 
 /* A cut through a world knows its bodies, their spacings and who is retired. */
@@ -251,28 +247,28 @@ static void test_world(void)
     d.cells[0] = d.cells[1] = d.cells[2] = 10;
     d.points = 2000;
     d.bodies = 2;
-    equal("a world", mpm_init(&w, &d, NULL, 0), MPM_OK);
+    CHECK_EQUAL("a world", mpm_init(&w, &d, NULL, 0), MPM_OK);
     b.density = 1;
     b.spacing = MPM_R(0.05);
     b.shape = mpm_box(MPM_R(0.2), MPM_R(0.3), MPM_R(0.6), MPM_R(0.8), MPM_R(0.7), MPM_R(0.8));
-    equal("... its upper body", mpm_body_add(&w, &b), MPM_OK);
+    CHECK_EQUAL("... its upper body", mpm_body_add(&w, &b), MPM_OK);
     b.spacing = MPM_R(0.1);
     b.shape = mpm_box(MPM_R(0.1), MPM_R(0.2), MPM_R(0.1), MPM_R(0.9), MPM_R(0.8), MPM_R(0.5));
-    equal("... its lower body", mpm_body_add(&w, &b), MPM_OK);
+    CHECK_EQUAL("... its lower body", mpm_body_add(&w, &b), MPM_OK);
     cut = mpm_draw_cut_of(&w, NULL);
     cut.at = 0.5;
     cut.half_thickness = 0.06;
     cut.window[1] = cut.window[3] = 1;
     mpm_draw_canvas_init(&c, 432, 432, NULL, 0); /* the frame: 400 pixels for the length 1 */
-    equal("cut of a world", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &cut, &f), MPM_OK);
-    holds("each body in a colour of its own",
-          mpm_draw_pixel(&c, 216, 136) != 0xffffff && mpm_draw_pixel(&c, 216, 296) != 0xffffff &&
-              mpm_draw_pixel(&c, 216, 136) != mpm_draw_pixel(&c, 216, 296));
-    equal("nothing between them", mpm_draw_pixel(&c, 216, 196), 0xffffff);
+    CHECK_EQUAL("cut of a world", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &cut, &f), MPM_OK);
+    CHECK_TRUE("each body in a colour of its own",
+               mpm_draw_pixel(&c, 216, 136) != 0xffffff && mpm_draw_pixel(&c, 216, 296) != 0xffffff &&
+                   mpm_draw_pixel(&c, 216, 136) != mpm_draw_pixel(&c, 216, 296));
+    CHECK_EQUAL("nothing between them", mpm_draw_pixel(&c, 216, 196), 0xffffff);
     w.body[0].active = 0;
     mpm_draw_fill(&c, 0xffffff);
-    equal("the upper body retired", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &cut, &f), MPM_OK);
-    equal("... is not drawn", mpm_draw_pixel(&c, 216, 136), 0xffffff);
+    CHECK_EQUAL("the upper body retired", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &cut, &f), MPM_OK);
+    CHECK_EQUAL("... is not drawn", mpm_draw_pixel(&c, 216, 136), 0xffffff);
     mpm_draw_canvas_free(&c);
     mpm_free(&w);
 }
@@ -303,15 +299,15 @@ static void test_numbers(void)
         mpm_draw_number(text, sizeof text, value, digits);
         if (strcmp(text, wanted) != 0 && bad++ < 5) printf("# %.17g: %s, by printf %s\n", value, text, wanted);
     }
-    equal("numbers that printf writes otherwise", bad, 0);
-    equal("a number cut to fit", (long)mpm_draw_number(text, 4, -12345, 5), 3);
-    holds("... and terminated", strcmp(text, "-12") == 0);
+    CHECK_EQUAL("numbers that printf writes otherwise", bad, 0);
+    CHECK_EQUAL("a number cut to fit", (long)mpm_draw_number(text, 4, -12345, 5), 3);
+    CHECK_TRUE("... and terminated", strcmp(text, "-12") == 0);
     mpm_draw_number(text, sizeof text, -INFINITY, 3);
-    holds("infinity", strcmp(text, "-inf") == 0);
+    CHECK_TRUE("infinity", strcmp(text, "-inf") == 0);
     mpm_draw_number(text, sizeof text, NAN, 3);
-    holds("not a number", strcmp(text, "nan") == 0);
+    CHECK_TRUE("not a number", strcmp(text, "nan") == 0);
     mpm_draw_number(text, sizeof text, 0, 3);
-    holds("zero", strcmp(text, "0") == 0);
+    CHECK_TRUE("zero", strcmp(text, "0") == 0);
 }
 
 /* A bar has the map's colours from end to end, and its numbers below. */
@@ -321,14 +317,14 @@ static void test_color_bar(void)
     mpm_draw_canvas c;
     mpm_draw_canvas_init(&c, 200, 80, NULL, 0);
     mpm_draw_color_bar(&c, where, MPM_DRAW_HEAT, 0, 1, "K");
-    equal("the bar's lower end", mpm_draw_pixel(&c, 20, 12), mpm_draw_map_color(MPM_DRAW_HEAT, 0.5 / 160));
-    equal("its middle", mpm_draw_pixel(&c, 100, 12), mpm_draw_map_color(MPM_DRAW_HEAT, 80.5 / 160));
-    equal("its upper end", mpm_draw_pixel(&c, 179, 12), mpm_draw_map_color(MPM_DRAW_HEAT, 159.5 / 160));
-    equal("nothing beside it", darkness(&c, 181, 0, 200, 20), 0);
-    holds("numbers and a label below", darkness(&c, 0, 25, 200, 80) > 30);
+    CHECK_EQUAL("the bar's lower end", mpm_draw_pixel(&c, 20, 12), mpm_draw_map_color(MPM_DRAW_HEAT, 0.5 / 160));
+    CHECK_EQUAL("its middle", mpm_draw_pixel(&c, 100, 12), mpm_draw_map_color(MPM_DRAW_HEAT, 80.5 / 160));
+    CHECK_EQUAL("its upper end", mpm_draw_pixel(&c, 179, 12), mpm_draw_map_color(MPM_DRAW_HEAT, 159.5 / 160));
+    CHECK_EQUAL("nothing beside it", darkness(&c, 181, 0, 200, 20), 0);
+    CHECK_TRUE("numbers and a label below", darkness(&c, 0, 25, 200, 80) > 30);
     mpm_draw_fill(&c, 0xffffff);
     mpm_draw_color_bar(&c, where, MPM_DRAW_HEAT, 1, 1, "K");
-    equal("no range, no bar", darkness(&c, 0, 0, 200, 80), 0);
+    CHECK_EQUAL("no range, no bar", darkness(&c, 0, 0, 200, 80), 0);
     mpm_draw_canvas_free(&c);
 }
 
@@ -338,21 +334,21 @@ static void test_ticks(void)
     CHECK_NEAR("nice 0.28", mpm_draw_nice(0.28), 0.2, 1e-12);
     CHECK_NEAR("nice 5", mpm_draw_nice(5), 5, 1e-12);
     CHECK_NEAR("nice 999", mpm_draw_nice(999), 500, 1e-12);
-    equal("ticks of -1 .. 1", mpm_draw_ticks(-1, 1, 0, 6, ticks), 5);
-    holds("the first", strcmp(ticks[0].text, "-1.0") == 0);
-    holds("zero without a sign", strcmp(ticks[2].text, "0.0") == 0);
+    CHECK_EQUAL("ticks of -1 .. 1", mpm_draw_ticks(-1, 1, 0, 6, ticks), 5);
+    CHECK_TRUE("the first", strcmp(ticks[0].text, "-1.0") == 0);
+    CHECK_TRUE("zero without a sign", strcmp(ticks[2].text, "0.0") == 0);
     mpm_draw_ticks(-6, 3, 1, 6, ticks);
-    holds("powers of ten", strcmp(ticks[0].text, "10^-6") == 0);
+    CHECK_TRUE("powers of ten", strcmp(ticks[0].text, "10^-6") == 0);
     mpm_draw_ticks(0, 3e6, 0, 3, ticks);
-    holds("large numbers", strcmp(ticks[1].text, "1e6") == 0);
+    CHECK_TRUE("large numbers", strcmp(ticks[1].text, "1e6") == 0);
     mpm_draw_ticks(0.001, 0.0016, 0, 4, ticks);
-    holds("small ones with the decimals of their step", strcmp(ticks[1].text, "0.0012") == 0);
-    equal("no axis, no ticks: not a number", mpm_draw_ticks(mpm_sqrt(-1), 1, 1, 4, ticks), 0);
-    equal("... narrower than any step", mpm_draw_ticks(0, 5e-324, 0, 4, ticks), 0);
-    equal("a colour map that is none: grey", (int)mpm_draw_map_color((mpm_draw_map)77, 0), 0x9aa0a6);
-    equal("more digits than a number has", (int)mpm_draw_number(ticks[0].text, 32, 0.1, 2147483647), 3);
-    equal("... from high to low", mpm_draw_ticks(1, 0, 0, 4, ticks), 0);
-    equal("... powers beyond any number", mpm_draw_ticks(-1e300, 1e300, 1, 4, ticks), 0);
+    CHECK_TRUE("small ones with the decimals of their step", strcmp(ticks[1].text, "0.0012") == 0);
+    CHECK_EQUAL("no axis, no ticks: not a number", mpm_draw_ticks(mpm_sqrt(-1), 1, 1, 4, ticks), 0);
+    CHECK_EQUAL("... narrower than any step", mpm_draw_ticks(0, 5e-324, 0, 4, ticks), 0);
+    CHECK_EQUAL("a colour map that is none: grey", (int)mpm_draw_map_color((mpm_draw_map)77, 0), 0x9aa0a6);
+    CHECK_EQUAL("more digits than a number has", (int)mpm_draw_number(ticks[0].text, 32, 0.1, 2147483647), 3);
+    CHECK_EQUAL("... from high to low", mpm_draw_ticks(1, 0, 0, 4, ticks), 0);
+    CHECK_EQUAL("... powers beyond any number", mpm_draw_ticks(-1e300, 1e300, 1, 4, ticks), 0);
 }
 
 /* Far from zero, two ticks bear different numbers, each within a hundredth of a step of its place. */
@@ -375,10 +371,10 @@ static void test_far_ticks(void)
             off += !(fabs(strtod(ticks[i].text, NULL) - ticks[i].at) <= 0.01 * step);
         }
         sprintf(what, "ticks of %.10g .. %.10g that repeat another or are off", range[r][0], range[r][1]);
-        equal(what, same + off + (n < 3 || n > 10), 0);
+        CHECK_EQUAL(what, same + off + (n < 3 || n > 10), 0);
     }
     mpm_draw_ticks(1e15, 1e15 + 1, 0, 6, ticks);
-    holds("closer than numbers have digits: one of them only", ticks[0].text[0] && !ticks[1].text[0]);
+    CHECK_TRUE("closer than numbers have digits: one of them only", ticks[0].text[0] && !ticks[1].text[0]);
 }
 
 /* ---- scatter and plot ---------------------------------------------------------------------- */
@@ -413,22 +409,22 @@ static void test_plots(void)
     p.x_label = "time [\xc2\xb5s]";
     p.y_label = "velocity [m/s]";
     mpm_draw_canvas_init(&c, 800, 400, NULL, 0);
-    equal("plot", mpm_draw_plot(&c, mpm_draw_tile(&c, 2, 1, 0), &p, &f), MPM_OK);
-    holds("ink in its tile", darkness(&c, 0, 0, 400, 400) > 2000);
-    equal("none beyond it", darkness(&c, 400, 0, 800, 400), 0);
+    CHECK_EQUAL("plot", mpm_draw_plot(&c, mpm_draw_tile(&c, 2, 1, 0), &p, &f), MPM_OK);
+    CHECK_TRUE("ink in its tile", darkness(&c, 0, 0, 400, 400) > 2000);
+    CHECK_EQUAL("none beyond it", darkness(&c, 400, 0, 800, 400), 0);
     s.count = 200;
     s.x = y;
     s.y = z;
     s.value = x;
     s.label = "time [\xc2\xb5s]";
     s.note = "not equal";
-    equal("scatter", mpm_draw_scatter(&c, mpm_draw_tile(&c, 2, 1, 1), &s, &f), MPM_OK);
-    holds("ink in the other tile", darkness(&c, 400, 0, 800, 400) > 2000);
-    equal("written", mpm_io_png(FOLDER "/plots.png", c.rgb, c.width, c.height, NULL, &f), MPM_OK);
+    CHECK_EQUAL("scatter", mpm_draw_scatter(&c, mpm_draw_tile(&c, 2, 1, 1), &s, &f), MPM_OK);
+    CHECK_TRUE("ink in the other tile", darkness(&c, 400, 0, 800, 400) > 2000);
+    CHECK_EQUAL("written", mpm_io_png(FOLDER "/plots.png", c.rgb, c.width, c.height, NULL, &f), MPM_OK);
     p.log_x = p.log_y = 1;
-    equal("logarithmic, where positive", mpm_draw_plot(&c, mpm_draw_tile(&c, 2, 1, 0), &p, &f), MPM_OK);
+    CHECK_EQUAL("logarithmic, where positive", mpm_draw_plot(&c, mpm_draw_tile(&c, 2, 1, 0), &p, &f), MPM_OK);
     curves[0].count = curves[1].count = 0;
-    equal("nothing to plot", mpm_draw_plot(&c, mpm_draw_tile(&c, 2, 1, 0), &p, &f), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("nothing to plot", mpm_draw_plot(&c, mpm_draw_tile(&c, 2, 1, 0), &p, &f), MPM_ERR_ARGUMENT);
     for (i = 0; i < 3; i++) {
         x[i] = i == 1 ? (mpm_real)INFINITY : (mpm_real)NAN;
         y[i] = i == 1 ? 0 : (mpm_real)NAN;
@@ -436,11 +432,12 @@ static void test_plots(void)
     s.x = x;
     s.y = y;
     s.count = 3;
-    equal("nothing finite to scatter", mpm_draw_scatter(&c, mpm_draw_tile(&c, 2, 1, 1), &s, &f), MPM_ERR_ARGUMENT);
-    holds("... is said", strcmp(f.field, "points of the scatter plot that are finite") == 0);
+    CHECK_EQUAL("nothing finite to scatter", mpm_draw_scatter(&c, mpm_draw_tile(&c, 2, 1, 1), &s, &f),
+                MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... is said", strcmp(f.field, "points of the scatter plot that are finite") == 0);
     s.count = 0;
-    equal("nothing to scatter", mpm_draw_scatter(&c, mpm_draw_tile(&c, 2, 1, 1), &s, &f),
-          MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("nothing to scatter", mpm_draw_scatter(&c, mpm_draw_tile(&c, 2, 1, 1), &s, &f),
+                MPM_ERR_ARGUMENT);
     mpm_draw_canvas_free(&c);
 }
 
@@ -455,9 +452,9 @@ static void test_ticks_room(void)
     d.ticks = 1;
     d.length_scale = 1e3;
     mpm_draw_canvas_init(&c, 800, 400, NULL, 0);
-    equal("a cut with long numbers", mpm_draw_cut(&c, mpm_draw_tile(&c, 4, 1, 1), &d, &f), MPM_OK);
-    holds("... in its tile", darkness(&c, 200, 0, 400, 400) > 1000);
-    equal("... and not in that beside it", darkness(&c, 0, 0, 205, 400), 0);
+    CHECK_EQUAL("a cut with long numbers", mpm_draw_cut(&c, mpm_draw_tile(&c, 4, 1, 1), &d, &f), MPM_OK);
+    CHECK_TRUE("... in its tile", darkness(&c, 200, 0, 400, 400) > 1000);
+    CHECK_EQUAL("... and not in that beside it", darkness(&c, 0, 0, 205, 400), 0);
     mpm_draw_canvas_free(&c);
 }
 
@@ -485,18 +482,18 @@ static void test_clip(void)
         mpm_draw_canvas_init(&c, 200, 160, NULL, 0);
         all = mpm_draw_tile(&c, 1, 1, 0);
         memcpy(c.clip, box, sizeof box);
-        if (k == 0) equal("a plot within a clip", mpm_draw_plot(&c, all, &p, &f), MPM_OK);
-        if (k == 1) equal("a scatter plot within a clip", mpm_draw_scatter(&c, all, &s, &f), MPM_OK);
-        if (k == 2) equal("a cut within a clip", mpm_draw_cut(&c, all, &cut, &f), MPM_OK);
-        holds("... draws there", darkness(&c, 90, 40, 150, 120) > 0);
-        equal("... and nowhere else", darkness(&c, 0, 0, 200, 160) - darkness(&c, 90, 40, 150, 120), 0);
-        holds("... and leaves it as it was", memcmp(c.clip, box, sizeof box) == 0);
+        if (k == 0) CHECK_EQUAL("a plot within a clip", mpm_draw_plot(&c, all, &p, &f), MPM_OK);
+        if (k == 1) CHECK_EQUAL("a scatter plot within a clip", mpm_draw_scatter(&c, all, &s, &f), MPM_OK);
+        if (k == 2) CHECK_EQUAL("a cut within a clip", mpm_draw_cut(&c, all, &cut, &f), MPM_OK);
+        CHECK_TRUE("... draws there", darkness(&c, 90, 40, 150, 120) > 0);
+        CHECK_EQUAL("... and nowhere else", darkness(&c, 0, 0, 200, 160) - darkness(&c, 90, 40, 150, 120), 0);
+        CHECK_TRUE("... and leaves it as it was", memcmp(c.clip, box, sizeof box) == 0);
         mpm_draw_canvas_free(&c);
     }
     mpm_draw_canvas_init(&c, 200, 160, NULL, 0);
     c.clip[2] = c.clip[3] = 3; /* left of and above any frame */
-    equal("a clip beside the frame", mpm_draw_scatter(&c, mpm_draw_tile(&c, 1, 1, 0), &s, &f), MPM_OK);
-    equal("... lets nothing through", darkness(&c, 0, 0, 200, 160), 0);
+    CHECK_EQUAL("a clip beside the frame", mpm_draw_scatter(&c, mpm_draw_tile(&c, 1, 1, 0), &s, &f), MPM_OK);
+    CHECK_EQUAL("... lets nothing through", darkness(&c, 0, 0, 200, 160), 0);
     mpm_draw_canvas_free(&c);
 }
 
@@ -513,38 +510,38 @@ static void test_odd_sizes(void)
     mpm_draw_canvas_init(&c, 300, 200, NULL, 0);
     whole = mpm_draw_tile(&c, 1, 1, 0);
     r = mpm_draw_tile(&c, 0, 1, 0);
-    holds("a tile of no columns is empty", !(r.width > 0) && !(r.height > 0));
-    equal("... and holds no figure", mpm_draw_cut(&c, r, &d, &f), MPM_ERR_ARGUMENT);
-    holds("... which is said", strncmp(f.field, "place", 5) == 0);
+    CHECK_TRUE("a tile of no columns is empty", !(r.width > 0) && !(r.height > 0));
+    CHECK_EQUAL("... and holds no figure", mpm_draw_cut(&c, r, &d, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... which is said", strncmp(f.field, "place", 5) == 0);
     r = mpm_draw_tile(&c, 1, -1, 3);
-    holds("nor has one of no rows a size", !(r.width > 0));
+    CHECK_TRUE("nor has one of no rows a size", !(r.width > 0));
     for (k = 0; k < 4; k++) {
         c.unit = units[k];
-        equal("a unit that no picture has", mpm_draw_cut(&c, whole, &d, &f), MPM_ERR_ARGUMENT);
+        CHECK_EQUAL("a unit that no picture has", mpm_draw_cut(&c, whole, &d, &f), MPM_ERR_ARGUMENT);
         mpm_draw_color_bar(&c, whole, MPM_DRAW_HEAT, 0, 1, "l");
         c.unit = 1;
         r = whole;
         if (k % 2) r.x = 1e17;
         else r.width = units[k] > 0 ? 1e12 : (double)INFINITY;
-        equal("a place that no picture has", mpm_draw_cut(&c, r, &d, &f), MPM_ERR_ARGUMENT);
+        CHECK_EQUAL("a place that no picture has", mpm_draw_cut(&c, r, &d, &f), MPM_ERR_ARGUMENT);
         mpm_draw_color_bar(&c, r, MPM_DRAW_HEAT, 0, 1, "l");
     }
-    equal("nothing is drawn", darkness(&c, 0, 0, 300, 200), 0);
+    CHECK_EQUAL("nothing is drawn", darkness(&c, 0, 0, 300, 200), 0);
     d.window[0] = -1e308;
     d.window[1] = 1e308;
     d.window[3] = 1;
-    equal("a window wider than numbers", mpm_draw_cut(&c, whole, &d, &f), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("a window wider than numbers", mpm_draw_cut(&c, whole, &d, &f), MPM_ERR_ARGUMENT);
     d.window[0] = 0;
     d.window[1] = 1e-300;
     d.window[3] = 1e299;
-    holds("a window of extreme sides comes to an end", mpm_draw_cut(&c, whole, &d, &f) <= 0);
+    CHECK_TRUE("a window of extreme sides comes to an end", mpm_draw_cut(&c, whole, &d, &f) <= 0);
     mpm_draw_canvas_free(&c);
     two[0] = two[1] = make_cut();
-    equal("columns without end", mpm_draw_cuts(&c, two, 2, 156128629, 1521821875, &f), MPM_ERR_ARGUMENT);
-    equal("columns by the billion", mpm_draw_cuts(&c, two, 2, 2147483647, 1, &f), MPM_ERR_ARGUMENT);
-    equal("powers that no number has", mpm_draw_ticks(-1e300, 1e300, 1, 6, ticks), 0);
-    equal("ticks of nothing", mpm_draw_ticks((double)NAN, 1, 0, 6, ticks), 0);
-    equal("a map that there is not", (long)mpm_draw_map_color((mpm_draw_map)77, 0.5), 0x9aa0a6);
+    CHECK_EQUAL("columns without end", mpm_draw_cuts(&c, two, 2, 156128629, 1521821875, &f), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("columns by the billion", mpm_draw_cuts(&c, two, 2, 2147483647, 1, &f), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("powers that no number has", mpm_draw_ticks(-1e300, 1e300, 1, 6, ticks), 0);
+    CHECK_EQUAL("ticks of nothing", mpm_draw_ticks((double)NAN, 1, 0, 6, ticks), 0);
+    CHECK_EQUAL("a map that there is not", (long)mpm_draw_map_color((mpm_draw_map)77, 0.5), 0x9aa0a6);
 }
 
 int main(void)

@@ -1,10 +1,7 @@
 /* The program build/spray (made by make before the tests): it runs, its books balance, a restart
    gives the same bytes, bad input is refused. SPDX-License-Identifier: MIT */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "check.h"
+#include "files.h"
 
 #define FOLDER "build/tests/spray_example"
 
@@ -18,51 +15,13 @@ static int spray_in(const char *folder, const char *options)
 
 static int spray(const char *options) { return spray_in(FOLDER, options); }
 
-static long count_lines(const char *path)
-{
-    FILE *f = fopen(path, "r");
-    long lines = 0;
-    int c;
-    if (!f) return -1;
-    while ((c = fgetc(f)) != EOF) lines += c == '\n';
-    fclose(f);
-    return lines;
-}
-
-/* The whole file, or NULL. */
-static char *contents(const char *path, size_t *bytes)
-{
-    FILE *f = fopen(path, "rb");
-    size_t room = 1 << 22;
-    char *text = (char *)calloc(1, room);
-    *bytes = f && text ? fread(text, 1, room - 1, f) : 0;
-    if (f) fclose(f);
-    return text;
-}
-
-/* A number of summary.json. */
-static double summary(const char *key)
-{
-    size_t bytes;
-    char *text = contents(FOLDER "/summary.json", &bytes), quoted[80], *at;
-    double value = -1;
-    snprintf(quoted, sizeof quoted, "\"%s\":", key);
-    at = text ? strstr(text, quoted) : NULL;
-    if (at) value = strtod(at + strlen(quoted), NULL);
-    free(text);
-    return value;
-}
+static double summary(const char *key) { return number_in(FOLDER "/summary.json", key); }
 
 /* The message of the last run names the value. */
 static void refused(const char *options, const char *name)
 {
-    size_t bytes;
-    char *text;
-    int failed = spray(options);
-    CHECK_EQUAL(options, failed, 1);
-    text = contents(FOLDER ".err", &bytes);
-    CHECK_TRUE("... naming it", text && strstr(text, name));
-    free(text);
+    CHECK_EQUAL(options, spray(options), 1);
+    CHECK_TRUE("... naming it", strstr(text_of(FOLDER ".err"), name) != NULL);
 }
 
 /* ---- a run that goes on -------------------------------------------------------------------- */
@@ -100,13 +59,11 @@ static int same_file(const char *name)
 static void changed_byte(double part)
 {
     size_t bytes;
-    char *text = contents(FOLDER "/checkpoint.bin", &bytes);
-    FILE *f = fopen(FOLDER ".bin", "wb");
-    if (!text || !f) return;
-    text[(size_t)(part * (double)(bytes - 1))] ^= 4;
-    fwrite(text, 1, bytes, f);
-    fclose(f);
-    free(text);
+    unsigned char *data = slurp(FOLDER "/checkpoint.bin", &bytes);
+    CHECK_TRUE("a checkpoint", bytes > 0);
+    if (bytes) data[(size_t)(part * (double)(bytes - 1))] ^= 4;
+    write_file(FOLDER ".bin", data, bytes);
+    free(data);
     CHECK_EQUAL("a checkpoint with a changed byte", spray_in(WHOLE, HOT "--time 0.004 --restart " FOLDER ".bin"), 1);
 }
 
@@ -123,17 +80,17 @@ static void test_resumed(void)
     failed = spray(HOT "--time 0.004 --restart " FOLDER "/checkpoint.bin");
     CHECK_EQUAL("it goes on in its folder", failed, 0);
     for (k = 0; k < 8; k++) CHECK_TRUE(file[k], same_file(file[k]));
-    CHECK_TRUE("... with the frames of the first part", count_lines(FOLDER "/spray-000000050.vtu") > 0);
+    CHECK_TRUE("... with the frames of the first part", lines_in(FOLDER "/spray-000000050.vtu") > 0);
     refused(HOT "--steps 790 --restart " FOLDER "/checkpoint.bin", "step 800, past the end");
     failed = spray(HOT "--time 0.0005");
     CHECK_EQUAL("a run from the start in a used folder", failed, 0);
-    CHECK_EQUAL("... begins its series anew", count_lines(FOLDER "/spray.pvd"), count_lines(WHOLE "/spray.pvd"));
+    CHECK_EQUAL("... begins its series anew", lines_in(FOLDER "/spray.pvd"), lines_in(WHOLE "/spray.pvd"));
 }
 
 int main(void)
 {
     size_t whole_bytes, parts_bytes;
-    char *whole, *parts;
+    unsigned char *whole, *parts;
     int failed = spray("--steps 4000 --frames 4");
     CHECK_EQUAL("4000 steps of the paper's spray", failed, 0);
     CHECK_EQUAL("40 batches of 50", summary("injected"), 2000);
@@ -141,11 +98,11 @@ int main(void)
     CHECK_RELATIVE("deposit fraction", summary("deposit_fraction"), summary("deposited") / 2000, 1e-12);
     CHECK_TRUE("impact speed of the first to arrive [m/s]",
                summary("impact_speed_mean_m_s") > 25 && summary("impact_speed_mean_m_s") < 45);
-    CHECK_TRUE("one row per first impact", count_lines(FOLDER "/impacts.csv") >= 2 + (long)summary("deposited"));
-    whole = contents(FOLDER "/checkpoint.bin", &whole_bytes);
+    CHECK_TRUE("one row per first impact", lines_in(FOLDER "/impacts.csv") >= 2 + (long)summary("deposited"));
+    whole = slurp(FOLDER "/checkpoint.bin", &whole_bytes);
     failed = spray("--steps 2000 --frames 0") || spray("--steps 4000 --frames 0 --restart " FOLDER "/checkpoint.bin");
     CHECK_EQUAL("half of it, and a restart from there", failed, 0);
-    parts = contents(FOLDER "/checkpoint.bin", &parts_bytes);
+    parts = slurp(FOLDER "/checkpoint.bin", &parts_bytes);
     CHECK_TRUE("give the same bytes", whole && parts && whole_bytes > 100000 && whole_bytes == parts_bytes &&
                                           !memcmp(whole, parts, whole_bytes));
     free(whole);

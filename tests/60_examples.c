@@ -22,7 +22,7 @@ static void refused(const char *options, const char *value)
     snprintf(text, sizeof text, "%s --out build/tests/bad", options);
     CHECK_TRUE(line, run(text) != 0);
     CHECK_TRUE("... with a message naming the value", strstr(text_of("build/tests/impact.err"), value) != NULL);
-    CHECK_TRUE("... and no summary", number_in("build/tests/bad/summary.json", "steps") < -1e299);
+    CHECK_TRUE("... and no summary", isnan(number_in("build/tests/bad/summary.json", "steps")));
 }
 
 /* A coarse short impact with further options, into build/tests/NAME; returns its summary. */
@@ -128,6 +128,7 @@ static void scene(void)
     impact_case c = impact_case_default();
     impact_result r;
     char message[300];
+    const char *al;
     double ball;
     impact s;
     c.spacing = 0.35;
@@ -142,6 +143,7 @@ static void scene(void)
     CHECK_RELATIVE("half as high as wide", impact_half_height(&c) / impact_half_width(&c), 0.5, 1e-12);
     CHECK_NEAR("resting on the surface", mpm_body_totals(&s.world, IMPACT_PARTICLE).low[2], 0, 0.35);
     mpm_free(&s.world);
+    al = coarse("al", "");
     c = impact_case_default();
     c.spacing = 0.75;
     c.time = 1;
@@ -149,14 +151,14 @@ static void scene(void)
     while (s.world.steps < s.steps)
         if (impact_step(&s) < 0) break;
     r = impact_measure(&s, &c);
-    CHECK_EQUAL("impact_step takes the example's steps", s.world.steps,
-                number_in("build/tests/al/summary.json", "steps"));
-    CHECK_RELATIVE("... to the same end", r.rebound.mean, number_in("build/tests/al/summary.json", "v_rest_mean_m_s"),
+    CHECK_EQUAL("impact_step takes the example's steps", s.world.steps, number_in(al, "steps"));
+    CHECK_RELATIVE("... to the same end", r.rebound.mean, number_in(al, "v_rest_mean_m_s"),
                    sizeof(mpm_real) < 8 ? 1e-4 : 1e-9);
     mpm_free(&s.world);
 }
 
-int main(void)
+/* The program as it is built, in double: a test in float leaves this to its twin in double. */
+static void programs(void)
 {
     const char *q = "build/tests/quarter/summary.json", *f = "build/tests/full/summary.json";
     const char *keys[] = {"v_rest_mean_m_s", "eps_mean", "plastic_energy_density_mean_MPa", "energy_error"};
@@ -181,7 +183,6 @@ int main(void)
     staged();
     oblique();
     metals();
-    scene();
     refused("--diameter -14", "-14");
     refused("--velocity nan", "nan");
     refused("--cell 0", "0");
@@ -208,5 +209,11 @@ int main(void)
     refused("--nonsense 1", "--nonsense");
     refused("--frames 10000", "--frames 10000");
     CHECK_TRUE("unwritable folder", run("--time 1 --out /proc/none") != 0);
+}
+
+int main(void)
+{
+    if (sizeof(mpm_real) == sizeof(double)) programs();
+    scene();
     return check_end();
 }

@@ -26,16 +26,6 @@ static void refused(const char *name, const char *value)
     CHECK_TRUE("... and nothing written", !*text_of("build/tests/taylor-bad/summary.json"));
 }
 
-static int lines_in(const char *path)
-{
-    FILE *f = fopen(path, "rb");
-    int c, n = 0;
-    if (!f) return -1;
-    while ((c = fgetc(f)) != EOF) n += c == '\n';
-    fclose(f);
-    return n;
-}
-
 /* Five microseconds, coarse: conserved sums, profile, and 3D close to axisymmetry. */
 static void program(void)
 {
@@ -115,12 +105,8 @@ static void walls(void)
     }
 }
 
-int main(void)
+static void refusals(void)
 {
-    program();
-    measures("axisymmetric");
-    measures("3d");
-    walls();
     refused("--length", "-3");
     refused("--diameter", "0");
     refused("--velocity", "-227");
@@ -136,5 +122,16 @@ int main(void)
     refused("--geometry", "4d");
     refused("--functions", "cubic");
     CHECK_TRUE("unwritable folder", run("--time 1 --cell 0.8 --spacing 0.4 --out /proc/none") != 0);
+}
+
+int main(void)
+{
+    if (sizeof(mpm_real) == sizeof(double)) { /* the program is in double: a test in float leaves it to its twin */
+        program();
+        refusals();
+    }
+    measures("axisymmetric");
+    measures("3d");
+    walls();
     return check_end();
 }

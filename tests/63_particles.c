@@ -40,25 +40,9 @@ static unsigned char *bytes_of(const char *folder, const char *name, size_t *n)
     static unsigned char *kept[2];
     static int turn;
     char path[PATH_BYTES];
-    FILE *f = fopen(file_in(folder, name, path, sizeof path), "rb");
-    *n = 0;
-    if (!f) return NULL;
     turn = !turn;
-    fseek(f, 0, SEEK_END);
-    *n = (size_t)ftell(f);
-    rewind(f);
     free(kept[turn]);
-    kept[turn] = (unsigned char *)malloc(*n + 1);
-    if (fread(kept[turn], 1, *n, f) != *n) *n = 0;
-    kept[turn][*n] = 0;
-    fclose(f);
-    return kept[turn];
-}
-
-static int exists(const char *folder, const char *name)
-{
-    size_t n;
-    return bytes_of(folder, name, &n) != NULL;
+    return kept[turn] = slurp(file_in(folder, name, path, sizeof path), n);
 }
 
 /* Whether two folders hold the same file; of a summary as far as it does not tell of this very run. */
@@ -86,17 +70,17 @@ static void interrupted(const char *normal, int touch)
     CHECK_EQUAL(normal, run(&whole, 0), 0);
     CHECK_EQUAL("stopped after 100 steps", run(&parts, 100), 3);
     CHECK_TRUE("... with a checkpoint, without a summary",
-               exists(FOLDER "/parts", "checkpoint.bin") && !exists(FOLDER "/parts", "summary.json"));
+               exists(FOLDER "/parts/checkpoint.bin") && !exists(FOLDER "/parts/summary.json"));
     CHECK_TRUE("... which is not taken for a finished scene", !particles_finished(&parts));
     scene(&parts, FOLDER "/parts");
     parts.base.normal = normal;
     parts.base.touch = touch;
     system("cp " FOLDER "/parts/checkpoint.bin " FOLDER "/first.bin");
     CHECK_EQUAL("stopped again, behind the second frame", run(&parts, 200), 3);
-    CHECK_TRUE("... which is there", exists(FOLDER "/parts", "points_0001.vtu"));
+    CHECK_TRUE("... which is there", exists(FOLDER "/parts/points_0001.vtu"));
     system("cp " FOLDER "/first.bin " FOLDER "/parts/checkpoint.bin");
     CHECK_EQUAL("to the end", run(&parts, 0), 0);
-    CHECK_TRUE("... at which the checkpoint goes", !exists(FOLDER "/parts", "checkpoint.bin"));
+    CHECK_TRUE("... at which the checkpoint goes", !exists(FOLDER "/parts/checkpoint.bin"));
     for (k = 0; k < 8; k++) {
         char line[80];
         snprintf(line, sizeof line, "the same bits: %s", file[k]);

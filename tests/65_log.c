@@ -4,12 +4,9 @@
 #include "spray_study.c"
 #undef main
 #include "check.h"
+#include "files.h"
 
-#ifdef MPM_FLOAT
-#define LOG "build/test-log-f32"
-#else
 #define LOG "build/test-log"
-#endif
 
 #define SAID LOG ".said"
 
@@ -53,14 +50,6 @@ static int records(void)
     return bad ? -1000 : s.count;
 }
 
-static void write_log(const char *text, size_t n)
-{
-    FILE *f = fopen(LOG, "wb");
-    if (!f) return;
-    fwrite(text, 1, n, f);
-    fclose(f);
-}
-
 int main(void)
 {
     study s = study_of_log();
@@ -82,7 +71,7 @@ int main(void)
     n = strlen(line);
     if (!freopen(SAID, "w", stderr)) return 1; /* a notice for each */
     for (cut = 1; cut < n; cut++) {
-        write_log(line, n - cut);
+        write_file(LOG, line, n - cut);
         accepted += records() != 0;
         if (log_write(&s, &r[1]) || log_write(&s, &r[2])) lost++;
         lost += records() != (cut == 1 ? 3 : 2); /* only the end of the line gone: put back */
@@ -93,7 +82,7 @@ int main(void)
         strcpy(other, line);
         other[cut] = (char)(other[cut] ^ 1);
         strcat(other, line);
-        write_log(other, 2 * n);
+        write_file(LOG, other, 2 * n);
         changed += records() != 1;
     }
     CHECK_EQUAL("lines with a bit changed that count, or spoil the next", changed, 0);

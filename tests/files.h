@@ -1,10 +1,20 @@
-/* files.h - what a program wrote, as tests read it. SPDX-License-Identifier: MIT */
+/* files.h - files as tests read and write them. SPDX-License-Identifier: MIT */
 #ifndef FILES_H
 #define FILES_H
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* ---- bytes ----------------------------------------------------------------------------------- */
+
+static inline int exists(const char *path)
+{
+    FILE *f = fopen(path, "rb");
+    if (f) fclose(f);
+    return f != NULL;
+}
 
 /* What a file holds, up to room - 1 bytes, in `text`. Returns its length; 0 if there is none. */
 static inline size_t contents(const char *path, char *text, size_t room)
@@ -19,6 +29,25 @@ static inline size_t contents(const char *path, char *text, size_t room)
     return n;
 }
 
+/* The whole of a file in fresh memory, up to 16 MB, with a zero behind; NULL if there is none. */
+static inline unsigned char *slurp(const char *path, size_t *n)
+{
+    const size_t room = (size_t)1 << 24;
+    char *data = exists(path) ? (char *)malloc(room) : NULL;
+    *n = data ? contents(path, data, room) : 0;
+    return (unsigned char *)data;
+}
+
+static inline void write_file(const char *path, const void *data, size_t n)
+{
+    FILE *f = fopen(path, "wb");
+    if (!f) return;
+    if (n) fwrite(data, 1, n, f);
+    fclose(f);
+}
+
+/* ---- text ------------------------------------------------------------------------------------ */
+
 /* The text of a file, up to 20,000 bytes and until the next call; "" if there is none. */
 static inline const char *text_of(const char *path)
 {
@@ -27,14 +56,37 @@ static inline const char *text_of(const char *path)
     return text;
 }
 
-/* The number behind "key": in a JSON file; -1e300 if there is none. */
+static inline int lines_of(const char *text)
+{
+    int n = 0;
+    for (; *text; text++) n += *text == '\n';
+    return n;
+}
+
+/* How many lines a file has, of zeros too; -1 if there is none. */
+static inline long lines_in(const char *path)
+{
+    size_t n, i;
+    unsigned char *data = slurp(path, &n);
+    long lines = data ? 0 : -1;
+    for (i = 0; i < n; i++) lines += data[i] == '\n';
+    free(data);
+    return lines;
+}
+
+/* The number behind `key` in a text; not a number if there is none: that equals nothing and lies in no range. */
+static inline double number_behind(const char *text, const char *key)
+{
+    const char *at = strstr(text, key);
+    return at ? strtod(at + strlen(key), NULL) : (double)NAN;
+}
+
+/* The number behind "key": in a JSON file; not a number if there is none. */
 static inline double number_in(const char *path, const char *key)
 {
-    char quoted[64];
-    const char *at;
+    char quoted[80];
     snprintf(quoted, sizeof quoted, "\"%s\":", key);
-    at = strstr(text_of(path), quoted);
-    return at ? strtod(at + strlen(quoted), NULL) : -1e300;
+    return number_behind(text_of(path), quoted);
 }
 
 #endif

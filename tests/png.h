@@ -3,27 +3,9 @@
 #ifndef PNG_H
 #define PNG_H
 
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "files.h"
 
-/* The whole of a file in fresh memory, with a zero behind; NULL when it is not there. */
-static inline unsigned char *slurp(const char *path, size_t *n)
-{
-    FILE *in = fopen(path, "rb");
-    unsigned char *data;
-    size_t room = (size_t)1 << 24;
-    *n = 0;
-    if (!in) return NULL;
-    data = (unsigned char *)malloc(room);
-    if (data) {
-        *n = fread(data, 1, room - 1, in);
-        data[*n] = 0;
-    }
-    fclose(in);
-    return data;
-}
+#include <stdint.h>
 
 typedef struct inflater {
     const unsigned char *in;

@@ -7,6 +7,10 @@
 
 static const double eps = (double)MPM_EPSILON;
 
+/* What round-off may leave after hundreds of steps: of double, and of float, whose numbers of 7 digits leave no room
+   for the same multiple of epsilon. */
+static double roundoff(double of_double, double of_float) { return sizeof(mpm_real) == 8 ? of_double : of_float; }
+
 /* ---- rebound ------------------------------------------------------------------------------- */
 
 typedef struct rebound {
@@ -126,9 +130,9 @@ static void three_bodies(void)
                 for (k = 0; k < 3; k++) apart = check_worst(apart, fabs(v[order][k] - v[0][k]) / 100);
             printf("# law %d, %s: blocks at %.3f and %.3f m/s, foil %.2g\n", law, scene_basis((mpm_basis)basis),
                    v[0][0], v[0][2], v[0][1]);
-            CHECK_NEAR("three bodies at a node: whatever their numbers", apart, 0, 1e7 * eps);
-            CHECK_NEAR("... the foil stays in the middle", v[0][1] / 100, 0, 1e6 * eps);
-            CHECK_NEAR("... and the blocks are mirror images", (v[0][0] + v[0][2]) / 100, 0, 1e6 * eps);
+            CHECK_NEAR("three bodies at a node: whatever their numbers", apart, 0, roundoff(1e7 * eps, 1e-2));
+            CHECK_NEAR("... the foil stays in the middle", v[0][1] / 100, 0, roundoff(1e6 * eps, 5e-3));
+            CHECK_NEAR("... and the blocks are mirror images", (v[0][0] + v[0][2]) / 100, 0, roundoff(1e6 * eps, 2e-3));
         }
 }
 
@@ -226,7 +230,7 @@ static void bonded_spheres(void)
     const double two = vibrates(1), one = vibrates(0);
     printf("# energy drifts by %.5f bonded, %.5f as one body\n", two, one);
     CHECK_NEAR("bonded spheres: energy over a microsecond", two, 0, 0.01);
-    CHECK_NEAR("... as of one body", two, one, 1e7 * eps);
+    CHECK_NEAR("... as of one body", two, one, roundoff(1e7 * eps, 1e-5));
 }
 
 int main(void)

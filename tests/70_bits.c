@@ -122,7 +122,7 @@ static uint64_t bits_default_early(void)
     return run_impact(&c, 400);
 }
 
-/* GIMP, normals by logistic regression, contact where the points touch, friction, three mirrors' worth of model. */
+/* GIMP, normals by logistic regression, contact where the points touch, friction. */
 static uint64_t bits_logistic(void)
 {
     impact_case c = source_a();
@@ -248,7 +248,8 @@ int main(int argc, char **argv)
     const int same_libm = libm_bits() == libm[real];
     size_t i;
     if (!same_libm)
-        printf("# skip: this libm's numbers (%016llx) are not those recorded\n", (unsigned long long)libm_bits());
+        printf("skip - runs that call libm: its numbers (%016llx) are not those recorded\n",
+               (unsigned long long)libm_bits());
     for (i = 0; i < sizeof table / sizeof *table; i++) {
         uint64_t hash;
         if (table[i].slow && quick) continue;

@@ -10,7 +10,19 @@ run() { # compiler, test: the log gets its name when it is whole
     *.sh) sh "$2" "$1" ;;
     *) "$2" ;;
     esac >"$log.part" 2>&1
+    close "$log.part" $? >>"$log.part"
     mv "$log.part" "$log"
+}
+closing() { sed -n '/^[0-9]* passed, [0-9]* failed$/p' "$1" | tail -n 1; }
+close() { # log, exit status: one more failure, with its reason, where the closing line says too little
+    line=$(closing "$1")
+    why=
+    case $line in
+    '') why="it died before its closing line, exit status $2" ;;
+    '0 passed, 0 failed') why="it checked nothing, exit status $2" ;;
+    *', 0 failed') [ "$2" -eq 0 ] || why="exit status $2" ;;
+    esac
+    [ -z "$why" ] || printf 'not ok - %s\n%d passed, 1 failed\n' "$why" "${line%% *}"
 }
 if [ "$1" = --one ]; then # this script again, as one of the jobs
     run "$2" "$3"
@@ -23,21 +35,17 @@ shift 2
 passed=0
 failed=0
 count() { # adds up the closing line "N passed, N failed" of a log
-    p=$(sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed$/\1/p' "$1" | tail -n 1)
-    f=$(sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed$/\2/p' "$1" | tail -n 1)
-    if [ -z "$p" ]; then # the test died before its closing line
-        p=0
-        f=1
-    fi
-    passed=$((passed + p))
-    failed=$((failed + f))
+    line=$(closing "$1")
+    f=${line#* passed, }
+    passed=$((passed + ${line%% *}))
+    failed=$((failed + ${f% failed}))
 }
 show() { # test: its closing line and what a person must see, as soon as it is done
     log=build/tests/$(name_of "$1").log
     until [ -f "$log" ] || [ -f build/tests/done ]; do sleep 1; done
-    [ -f "$log" ] || echo "it did not run" >"$log"
+    [ -f "$log" ] || printf 'not ok - it did not run\n0 passed, 1 failed\n' >"$log"
     count "$log"
-    printf '%-32s %s\n' "$(name_of "$1")" "$(tail -n 1 "$log")"
+    printf '%-32s %s\n' "$(name_of "$1")" "$line"
     grep -E '^(not ok|skip)' "$log"
 }
 show_all() {
@@ -46,7 +54,7 @@ show_all() {
         [ -x "${t}_f32" ] && show "${t}_f32"
     done
     echo "$passed passed, $failed failed"
-    [ "$failed" -eq 0 ]
+    [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
 }
 mkdir -p build/tests
 rm -f build/tests/*.log build/tests/done

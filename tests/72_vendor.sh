@@ -11,6 +11,9 @@ mkdir -p "$dir"
 strict="-pedantic -Wall -Wextra -Wconversion -Wshadow -Werror"
 has() { command -v "$1" >/dev/null; }
 skip() { echo "skip - $1"; }
+cxx= # the C++ compilers there are
+for c in g++ clang++; do has $c && cxx="$cxx $c"; done
+[ -n "$cxx" ] || skip "neither g++ nor clang++ is installed: C++ projects were not tried"
 unset MAKEFLAGS MFLAGS MAKELEVEL DESTDIR PREFIX CFLAGS CXXFLAGS LDFLAGS # no wishes of the make that runs this
 version=$(sed -n 's/^#define MPM_VERSION "\(.*\)"/\1/p' mpm.h)
 
@@ -42,6 +45,8 @@ for real in double float; do
     for c in gcc clang; do
         has $c || continue
         check "mpm.c $real $c c99" $c -std=c99 $strict $flag -I. -O1 -c mpm.c -o "$dir/mpm_$c$flag.o"
+    done
+    for c in $cxx; do
         check "mpm.c $real $c c++11" $c -x c++ -std=c++11 -Wall -Wextra -Werror $flag -I. -fsyntax-only mpm.c
     done
 done
@@ -67,7 +72,8 @@ if has pkg-config; then
     flags=$(pkg-config --cflags --libs mpm)
     check "pkg-config: one file" "$cc" -std=c99 "$dir/one.c" -o "$dir/one" $flags
     check "... runs" says "$dir/one"
-    check "pkg-config: its mpm.c" "$cc" -std=c99 "$dir/many.c" "$(pkg-config --variable=source mpm)" -o "$dir/many" $flags
+    source=$(pkg-config --variable=source mpm)
+    check "pkg-config: its mpm.c" "$cc" -std=c99 "$dir/many.c" "$source" -o "$dir/many" $flags
     check "... runs" says "$dir/many"
 else
     skip "pkg-config is not installed: what mpm.pc says was not tried"
@@ -92,7 +98,10 @@ project() { # folder, languages, where the library comes from, targets...: a pro
         printf 'add_executable(%s %s)\ntarget_link_libraries(%s PRIVATE mpm::%s)\n' "with_$t" $source "with_$t" "$t"
     done >>"$folder/CMakeLists.txt"
 }
-configure() { cmake -S "$dir/$1" -B "$dir/$1/build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_PREFIX_PATH="$dir/cmade"; }
+configure() { # folder
+    cmake -S "$dir/$1" -B "$dir/$1/build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="${cxx##* }" \
+        -DCMAKE_PREFIX_PATH="$dir/cmade"
+}
 build() { # folder, programs...
     folder=$1
     shift
@@ -105,7 +114,8 @@ if has cmake; then
     build add_subdirectory with_mpm with_impl
     project add_headers C "add_subdirectory($root mpm)" mpm
     build add_headers with_mpm
-    check "... mpm.c is compiled only if asked for" [ -z "$(find "$dir/add_headers" -name '*mpm.a' -o -name 'mpm.*o*')" ]
+    built=$(find "$dir/add_headers" -name '*mpm.a' -o -name 'mpm.*o*')
+    check "... mpm.c is compiled only if asked for" [ -z "$built" ]
     check "... installs the project" cmake --install "$dir/add_headers/build" --prefix "$dir/theirs"
     check "... and nothing of ours" [ ! -e "$dir/theirs/include" ]
 
@@ -119,8 +129,10 @@ if has cmake; then
     project find_twice C 'find_package(mpm REQUIRED)
 find_package(mpm REQUIRED)' impl
     build find_twice with_impl
-    project find_cpp CXX 'find_package(mpm REQUIRED)' cpp
-    build find_cpp with_mpm
+    if [ -n "$cxx" ]; then
+        project find_cpp CXX 'find_package(mpm REQUIRED)' cpp
+        build find_cpp with_mpm
+    fi
     project find_newer C 'find_package(mpm 99 REQUIRED)' mpm
     check "find_package refuses a version that is not there" sh -c "! cmake -S '$dir/find_newer' \\
         -B '$dir/find_newer/build' -DCMAKE_C_COMPILER='$cc' -DCMAKE_PREFIX_PATH='$dir/cmade' 2>'$dir/newer' || exit 1
@@ -154,7 +166,10 @@ for real in double float; do
         has $c || continue
         check "mpm_all.h $real $c c99" $c -std=c99 $strict $flag -DMPM_IMPLEMENTATION twice.c -o twice -lm
         check "... static" $c -std=c99 $strict $flag static.c -o twice -lm
-        check "mpm_all.h $real $c c++11" $c -x c++ -std=c++11 -Wall -Wextra -Werror $flag -DMPM_IMPLEMENTATION -fsyntax-only twice.c
+    done
+    for c in $cxx; do
+        check "mpm_all.h $real $c c++11" $c -x c++ -std=c++11 -Wall -Wextra -Werror $flag -DMPM_IMPLEMENTATION \
+            -fsyntax-only twice.c
     done
 done
 check "the README's program with mpm_all.h" "$cc" -std=c99 $strict -O2 readme.c -o readme -lm

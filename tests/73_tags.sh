@@ -14,15 +14,19 @@ function ok(yes, what) {
     return yes
 }
 
-# Is there tests/NAME.c?
-function there(name,   line, found, file) {
-    if (!(name in known)) {
-        file = "tests/" name ".c"
-        known[name] = (getline line < file) > 0
-        close(file)
+function readable(path,   line) {
+    if (!(path in known)) {
+        known[path] = (getline line < path) > 0
+        close(path)
     }
-    return known[name]
+    return known[path]
 }
+
+# Is there tests/NAME.c?
+function there(name) { return readable("tests/" name ".c") }
+
+# Is there a test or an example of that whole name?
+function file(name) { return readable("tests/" name) || readable("tests/verify/" name) || readable("examples/" name) }
 
 # All tests named in a text, NN_name: returns how many, in found[].
 function tests(text, found,   n) {
@@ -106,7 +110,12 @@ FILENAME ~ /\.md$/ {
         text = substr(text, RSTART + RLENGTH)
         if (text !~ /^\.h/) ok(name in word, FILENAME ":" FNR ": no header has " name)
     }
-    text = $0
+    text = rest = $0
+    while (match(rest, /[0-9][0-9]_[a-z0-9_]+\.(c|sh)/)) {
+        name = substr(rest, RSTART, RLENGTH)
+        rest = substr(rest, RSTART + RLENGTH)
+        ok(file(name), FILENAME ":" FNR ": no " name " in tests or examples")
+    }
     gsub(/[0-9][0-9]_[a-z0-9_]+\.(c|sh)/, "", text)
     n = tests(text, found)
     for (i = 1; i <= n; i++) ok(there(found[i]), FILENAME ":" FNR ": no tests/" found[i] ".c")

@@ -8,17 +8,7 @@ top=$(pwd)
 dir=build/tests/programs
 rm -rf "$dir"
 mkdir -p "$dir"
-passed=0
-failed=0
-result() { # ok?, what
-    if [ "$1" -eq 0 ]; then
-        passed=$((passed + 1))
-        echo "ok - $2"
-    else
-        failed=$((failed + 1))
-        echo "not ok - $2"
-    fi
-}
+. tests/check.sh
 # Programs to NAME.c, what was promised to NAME.heading.
 for h in mpm*.h; do
     awk -v out="$dir/$h" '
@@ -34,39 +24,30 @@ for page in README.md docs/*.md; do
         /^```c$/ { inside = 1; whole = 0; text = ""; next }
         inside { text = text $0 "\n"; if (/int main\(/) whole = 1 }' "$page"
 done
-for h in mpm*.h; do
-    [ -f "$dir/$h.1.c" ]
-    result $? "$h has a complete program"
-done
+for h in mpm*.h; do check "$h has a complete program" [ -f "$dir/$h.1.c" ]; done
+ends_with_0() { # program: run in its folder, its output kept
+    (cd "$dir" && "./$1.run" >"$1.out" 2>&1) || { tail -n 1 "$dir/$1.out" && false; }
+}
 for c in "$dir"/*.c; do
     name=$(basename "$c" .c)
-    $cc -std=c99 -pedantic -Wall -Wextra -Werror -O2 "-I$top" "$c" -o "$dir/$name.run" -lm >"$dir/$name.cc" 2>&1
-    result $? "$name compiles: $(head -n 1 "$dir/$name.cc")"
-    [ -f "$dir/$name.run" ] || continue
-    (cd "$dir" && "./$name.run" >"$name.out" 2>&1)
-    result $? "$name ends with 0: $(tail -n 1 "$dir/$name.out")"
+    check "$name compiles" $cc -std=c99 -pedantic -Wall -Wextra -Werror -O2 "-I$top" "$c" -o "$dir/$name.run" -lm
+    check "... ends with 0" ends_with_0 "$name"
     [ -f "$dir/$name.heading" ] || continue
     tr '\n' ' ' <"$dir/$name.heading" | sed 's/  */ /g' | grep -oE '"[^"]*"|PBCP [0-9.]+ %' |
         tr -d '"' >"$dir/$name.says"
-    while read -r text; do
-        grep -qF -- "$text" "$dir/$name.out"
-        result $? "$name prints $text"
-    done <"$dir/$name.says"
+    while read -r text; do check "... prints $text" grep -qF -- "$text" "$dir/$name.out"; done <"$dir/$name.says"
 done
 # What is printed and lost is an error: of every program with options, by running it (built ones; make builds all);
 # of the short ones, by their last line.
+full() { # program: refuses a full standard output, in words and by its status
+    ! "$1" --help >/dev/full 2>"$dir/full" && grep "standard output" "$dir/full"
+}
 for c in examples/*.c examples/studies/*.c examples/studies/reproduction/main.c; do
     name=$(basename "$c" .c)
     [ "$name" = main ] && name=reproduction
     grep -qE 'int main\(' "$c" || continue
-    grep -qE 'return (program_end\(|fflush\(stdout\) \|\| ferror)' "$c"
-    result $? "$c ends with a look at standard output"
+    check "$c ends with a look at standard output" grep -E 'return (program_end\(|fflush\(stdout\) \|\| ferror)' "$c"
     [ -c /dev/full ] && [ -x "build/$name" ] && grep -q program_end "$c" || continue
-    "build/$name" --help >/dev/full 2>"$dir/full"
-    grep -q "standard output" "$dir/full"
-    result $? "$name says that standard output is full"
-    ! "build/$name" --help >/dev/full 2>&1
-    result $? "... and ends with another status than 0"
+    check "$name says that standard output is full" full "build/$name"
 done
-echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ]
+check_end

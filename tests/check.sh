@@ -2,14 +2,14 @@
 passed=0
 failed=0
 check() { # name, command...: one line, "ok - name" where the command succeeds
-    name=$1
+    check_name=$1
     shift
-    if "$@" >"$dir/out" 2>&1; then
+    if "$@" >"$dir/check.said" 2>&1; then
         passed=$((passed + 1))
-        echo "ok - $name"
+        echo "ok - $check_name"
     else
         failed=$((failed + 1))
-        echo "not ok - $name: $(head -n 3 "$dir/out" | tr '\n' ' ')"
+        echo "not ok - $check_name: $(head -n 3 "$dir/check.said" | tr '\n' ' ')"
     fi
 }
 check_end() { # the closing line, and the script's result

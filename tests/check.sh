@@ -16,3 +16,15 @@ check_end() { # the closing line, and the script's result
     echo "$passed passed, $failed failed"
     [ "$failed" -eq 0 ]
 }
+# Of tests/compile/agree.c, a small impact that ends in five numbers:
+numbers() { # file, command...: the command writes five numbers into it
+    file=$1
+    shift
+    "$@" >"$file.raw" || return 1
+    tr -d '\r' <"$file.raw" >"$file" # Windows ends lines in two characters
+    [ "$(grep -cE '^-?[0-9][0-9.]*(e[-+]?[0-9]+)?$' "$file")" = 5 ] && [ "$(wc -l <"$file")" -eq 5 ]
+}
+agree() { # two files of numbers, line by line
+    paste "$1" "$2" | awk '{ d = $1 - $2; s = $1 < 0 ? -$1 : $1; if (!(d <= 1e-7 * s && d >= -1e-7 * s)) bad = 1 }
+                           END { exit bad || NR != 5 }'
+}

@@ -19,6 +19,10 @@ symbol() {
     mpm_spray.h) echo '(int)mpm_spray_bytes(0)' ;;
     esac
 }
+only() { # object, pattern: main is there, and each of its external symbols fits the pattern
+    nm "$1" >"$dir/symbols" && grep -q ' main$' "$dir/symbols" &&
+        ! grep -E ' [A-TV-Z] ' "$dir/symbols" | grep -vE "$2"
+}
 headers=$(ls mpm*.h)
 for h in $headers; do
     s=$(symbol "$h")
@@ -44,12 +48,13 @@ for h in $headers; do
             check "$h $real $cxx c++11" $cxx -std=c++11 -Wall -Wextra -Werror -I. $flag "$dir/whole.cpp" "$dir/user.cpp" -o "$dir/cpp" -lm
         done
         if command -v nm >/dev/null; then
-            $1 -std=c99 -I. $flag -c "$dir/whole.c" -o "$dir/whole.o"
-            $1 -std=c99 -I. $flag -c "$dir/static.c" -o "$dir/static.o"
+            rm -f "$dir/whole.o" "$dir/static.o"
+            check "$h $real an object" $1 -std=c99 -I. $flag -c "$dir/whole.c" -o "$dir/whole.o"
+            check "$h $real a static one" $1 -std=c99 -I. $flag -c "$dir/static.c" -o "$dir/static.o"
             pattern=' [A-TV-Z] (mpm_|main$)'
             [ $real = float ] && pattern=' [A-TV-Z] (mpm_.*_f32$|mpm_(version|status_text|units_.*)$|main$)'
-            check "$h $real external symbols" sh -c "! nm '$dir/whole.o' | grep -E ' [A-TV-Z] ' | grep -vE '$pattern'"
-            check "$h $real static leaves none" sh -c "! nm '$dir/static.o' | grep -E ' [A-TV-Z] ' | grep -vE ' main\$'"
+            check "$h $real external symbols" only "$dir/whole.o" "$pattern"
+            check "$h $real static leaves none" only "$dir/static.o" ' main$'
         fi
     done
 done
@@ -89,9 +94,10 @@ done
 # Units compiled with different real types must not link.
 printf '#define MPM_IMPLEMENTATION\n#include "mpm.h"\nint main(void) { return 0; }\n' >"$dir/whole.c"
 printf '#include "mpm.h"\nint other(mpm_world *w);\nint other(mpm_world *w) { return mpm_step(w, 1); }\n' >"$dir/user.c"
-$1 -std=c99 -I. -c "$dir/whole.c" -o "$dir/whole.o"
-$1 -std=c99 -I. -DMPM_FLOAT -c "$dir/user.c" -o "$dir/user.o"
-check "double and float units do not link" sh -c "! $1 '$dir/whole.o' '$dir/user.o' -o '$dir/mixed' -lm"
+rm -f "$dir/whole.o" "$dir/user.o"
+check "a double unit" $1 -std=c99 -I. -c "$dir/whole.c" -o "$dir/whole.o"
+check "a float unit" $1 -std=c99 -I. -DMPM_FLOAT -c "$dir/user.c" -o "$dir/user.o"
+check "... do not link" sh -c "! $1 '$dir/whole.o' '$dir/user.o' -o '$dir/mixed' -lm"
 # Optimisations that take NaN and infinity away are refused; without that part of them every check holds.
 refuses() { # command...: does not compile, and the message says what to do
     ! "$@" 2>"$dir/refusal" && grep -q 'fno-finite-math-only' "$dir/refusal"
@@ -104,21 +110,21 @@ for cc in gcc clang; do
     done
     for flag in -O0 '-Ofast -fno-finite-math-only' '-Ofast -fno-finite-math-only -DMPM_FLOAT'; do
         rm -f "$dir/nan"
-        $cc -std=c99 -w $flag -I. -Itests tests/compile/nan.c -o "$dir/nan" -lm
-        check "$cc $flag: NaN is noticed" "$dir/nan"
+        check "$cc $flag: builds" $cc -std=c99 -w $flag -I. -Itests tests/compile/nan.c -o "$dir/nan" -lm
+        check "... NaN is noticed" "$dir/nan"
     done
 done
 # The same small impact by every compiler and level: equal but for accumulated round-off.
-agree() { # two files of numbers, line by line
-    paste "$1" "$2" | awk '{ d = $1 - $2; if (d < 0) d = -d; s = $1 < 0 ? -$1 : $1; if (d > 1e-7 * s) bad = 1 } END { exit bad || !NR }'
-}
+first=
 for cc in gcc clang; do
     command -v $cc >/dev/null || continue
     for level in -O0 -O2; do
-        $cc -std=c99 -I. -Itests $level -ffp-contract=off tests/compile/agree.c -o "$dir/agree" -lm &&
-            "$dir/agree" >"$dir/agree_$cc$level"
-        [ -f "$dir/agree_first" ] || cp "$dir/agree_$cc$level" "$dir/agree_first"
-        check "an impact by $cc $level agrees with the first" agree "$dir/agree_first" "$dir/agree_$cc$level"
+        rm -f "$dir/agree"
+        check "an impact by $cc $level builds" \
+            $cc -std=c99 -I. -Itests $level -ffp-contract=off tests/compile/agree.c -o "$dir/agree" -lm
+        check "... runs" numbers "$dir/agree_$cc$level" "$dir/agree"
+        [ -z "$first" ] || check "... agrees with that by $first" agree "$dir/agree_$first" "$dir/agree_$cc$level"
+        first=${first:-$cc$level}
     done
 done
 check_end

@@ -3069,7 +3069,8 @@ static inline mpm_status mpm__restored_points(const mpm_world *w, const mpm_blob
     int k;
     for (k = 0; k < w->fields + 2 && s == MPM_OK; k++) {
         const size_t size = k < w->fields ? sizeof(mpm_real) : k == w->fields ? 1 : sizeof(int32_t);
-        s = mpm_want(blob[k].bytes == (size_t)p->count * size, f, blob[k].name, (mpm_real)(blob[k].bytes / size), -1);
+        const size_t values = blob[k].bytes / size;
+        s = mpm_want(blob[k].bytes == (size_t)p->count * size, f, blob[k].name, (mpm_real)values, -1);
     }
     for (i = 0; i < p->count && s == MPM_OK; i++) {
         if ((s = mpm_want(p->mass[i] > 0, f, "mass of point", p->mass[i], i)) != MPM_OK) break;

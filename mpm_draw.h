@@ -1129,11 +1129,13 @@ MPM_API void mpm_draw_color_bar(mpm_draw_canvas *c, mpm_draw_rect where, mpm_dra
 MPM_API mpm_draw_rect mpm_draw_tile(const mpm_draw_canvas *c, int columns, int rows, int number)
 {
     mpm_draw_rect r = {0, 0, 0, 0};
+    int row;
     if (columns < 1 || rows < 1) return r;
+    row = number / columns;
     r.width = (double)c->width / columns;
     r.height = (double)c->height / rows;
     r.x = r.width * (number % columns);
-    r.y = r.height * (number / columns);
+    r.y = r.height * row;
     return r;
 }
 

@@ -1518,16 +1518,16 @@ static inline void mpm__io_words(mpm__io_page *t, const char *name, const char *
     mpm__io_say(t, "\n");
 }
 
-/* A line of `count` values: reals or, where these are NULL, whole numbers. */
+/* A line of `count` values: reals or whole numbers; the others are NULL. */
 static inline void mpm__io_values(mpm__io_page *t, const char *name, const mpm_real *real, const int32_t *whole,
                                   int count)
 {
-    char text[40];
+    char text[40] = "";
     int i;
     mpm__io_name(t, name);
     for (i = 0; i < count; i++) {
         if (real) mpm__io_print_real(text, sizeof text, real[i]);
-        else snprintf(text, sizeof text, "%ld", (long)whole[i]);
+        if (whole) snprintf(text, sizeof text, "%ld", (long)whole[i]);
         mpm__io_say(t, " ");
         mpm__io_say(t, text);
     }

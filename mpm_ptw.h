@@ -1058,12 +1058,12 @@ static inline int mpm__ptw_use_scg(mpm_material *m, const char *metal)
 /* The shear modulus and melting law that a set of PTW belongs to; 0: there is no such melting point. */
 static inline int mpm__ptw_use_moduli_of(mpm_material *m, const mpm__ptw_set_ptw *t)
 {
+    const mpm__ptw_set_scg *scg = MPM__PTW_FIND(mpm__ptw_set_scg, mpm__ptw_sets_scg, t->name);
     m->shear = t->shear;
     m->shear_modulus = mpm__ptw_stress_in(m, t->mu0);
     m->shear_d = mpm__ptw_stress_in(m, t->mts_d);
     m->shear_t = (mpm_real)t->mts_t;
-    if (t->shear == MPM_SHEAR_SCG)
-        mpm__ptw_use_shear_scg(m, MPM__PTW_FIND(mpm__ptw_set_scg, mpm__ptw_sets_scg, t->name));
+    if (t->shear == MPM_SHEAR_SCG && scg) mpm__ptw_use_shear_scg(m, scg);
     m->melt = t->melt;
     m->melt_temperature = (mpm_real)t->melt0;
     m->melt_a = (mpm_real)t->melt_a;

@@ -559,6 +559,8 @@ static void test_check(void)
     m.strength = MPM_STRENGTH_USER;
     CHECK_EQUAL("a user strength needs its function", mpm_material_check(&m, &f), MPM_ERR_ARGUMENT);
     CHECK_TRUE("... named", !strcmp(f.field, "strength_fn"));
+    m = preset("cu", "jc");
+    expect_fault(&m.melt_temperature, &m, m.jc.temperature, "melt_temperature", MPM_ERR_ARGUMENT);
     m = preset("cu", "ptw");
     CHECK_TRUE("cu has y0 = yinf, and passes", m.ptw.y0 == m.ptw.yinf && mpm_material_check(&m, &f) == MPM_OK);
     m = preset("ta", "ptw");

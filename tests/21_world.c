@@ -53,6 +53,10 @@ static void bad_descriptions(void)
     d = good;
     d.gravity[2] = nan;
     refuses_desc("gravity", d, MPM_ERR_NAN);
+    d = good;
+    d.geometry = MPM_AXISYMMETRIC;
+    d.origin[0] = -1;
+    refuses_desc("origin of r", d, MPM_ERR_ARGUMENT);
 }
 
 /* Numbers that name nothing, as uninitialised memory or another language would give them. */
@@ -360,8 +364,9 @@ static void small_ones(void)
                !mpm_shape_contains(&ball, MPM_R(2.5), MPM_R(4.5), 3));
     CHECK_TRUE("a cylinder too", mpm_shape_contains(&post, MPM_R(1.4), MPM_R(1.4), MPM_R(1.01)) &&
                !mpm_shape_contains(&post, MPM_R(1.5), MPM_R(1.5), 2) && !mpm_shape_contains(&post, 0, 0, MPM_R(4.01)));
-    CHECK_RELATIVE("shear waves: sqrt(mu/rho)", mpm_wave_speed_s(70e9, MPM_R(0.25), 2700), sqrt(28e9 / 2700), 8 * eps);
-    CHECK_RELATIVE("longitudinal: sqrt((lambda + 2 mu)/rho)", mpm_wave_speed_p(70e9, MPM_R(0.25), 2700),
+    CHECK_RELATIVE("shear waves: sqrt(mu/rho)", mpm_wave_speed_s(MPM_R(70e9), MPM_R(0.25), 2700),
+                   sqrt(28e9 / 2700), 8 * eps);
+    CHECK_RELATIVE("longitudinal: sqrt((lambda + 2 mu)/rho)", mpm_wave_speed_p(MPM_R(70e9), MPM_R(0.25), 2700),
                    sqrt(84e9 / 2700), 8 * eps);
 }
 
@@ -395,8 +400,51 @@ static void laws_fail(void)
     mpm_free(&w);
 }
 
+/* A strain that leaves a point no volume, or none that is a number, stops the step and names the point. */
+static void flattened(void)
+{
+    const mpm_real speed[] = {MPM_R(-1e5), MPM_R(1e30)};
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(1, 8, 8, 8, 0, 0, 0);
+    mpm_body_desc b = scene_body(&m, mpm_box(3, 3, 3, 5, 5, 5), 0.5, 0);
+    mpm_world w;
+    int32_t i;
+    int k;
+    for (k = 0; k < 2; k++) {
+        mpm_init(&w, &d, NULL, 0);
+        mpm_body_add(&w, &b);
+        for (i = 0; i < w.points.count; i++) w.points.v[0][i] = speed[k] * (w.points.x[0][i] - 4);
+        CHECK_EQUAL("squeezed, or spread, beyond any volume", mpm_step(&w, MPM_R(1e-4)), MPM_ERR_STATE);
+        CHECK_TRUE("... is named", !strcmp(w.fault.field, "volume ratio of point in one step"));
+        CHECK_TRUE("... with its point", w.fault.index >= 0 && w.fault.index < w.points.count);
+        mpm_free(&w);
+    }
+}
+
+/* The second body in memory for one. */
+static void one_body(void)
+{
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(1, 10, 10, 10, 0, 0, 0);
+    mpm_body_desc b = scene_body(&m, mpm_box(1, 1, 1, 2, 2, 2), 0.5, 0);
+    mpm_world w;
+    void *block;
+    d.bodies = 1;
+    d.points = 100;
+    block = malloc(mpm_bytes(&d));
+    CHECK_EQUAL("memory for one body", mpm_init(&w, &d, block, mpm_bytes(&d)), MPM_OK);
+    CHECK_EQUAL("... holds one", mpm_body_add(&w, &b), MPM_OK);
+    b.shape = mpm_box(4, 4, 4, 5, 5, 5);
+    CHECK_EQUAL("... and no second", mpm_body_add(&w, &b), MPM_ERR_FULL);
+    CHECK_TRUE("... which is named", !strcmp(w.fault.field, "bodies"));
+    CHECK_EQUAL("... and left out", w.bodies, 1);
+    mpm_free(&w);
+    free(block);
+}
+
 int main(void)
 {
+    CHECK_TRUE("the version", !strcmp(mpm_version(), MPM_VERSION));
     bad_descriptions();
     bad_choices();
     bad_bodies();
@@ -407,5 +455,7 @@ int main(void)
     huge();
     small_ones();
     laws_fail();
+    flattened();
+    one_body();
     return check_end();
 }

@@ -523,6 +523,35 @@ static void strength(mpm_basis basis)
     mpm_free(&w);
 }
 
+/* A hold of 1/2 leaves half of the velocity at which two parts of a node fly apart; one with a limit takes no more. */
+static void softened(mpm_scheme scheme, mpm_real limit)
+{
+    mpm_world w = blocks(MPM_LINEAR, 0, 40, MPM_CONTACT_FRICTION, 0);
+    double before[64], taken = 0, left = 0;
+    int32_t i;
+    w.desc.scheme = scheme;
+    mpm_locate(&w, step);
+    mpm_p2g(&w);
+    mpm_forces(&w);
+    mpm_grid_update(&w);
+    mpm_contact_find(&w);
+    CHECK_TRUE("blocks that fly apart share nodes", w.pairs > 9 && w.pairs < 64);
+    for (i = 0; i < w.pairs && i < 64; i++) {
+        w.pair[i].hold = MPM_R(0.5);
+        w.pair[i].limit = limit;
+        before[i] = (double)w.node[w.pair[i].a].momentum[2];
+    }
+    mpm_contact_apply(&w);
+    for (i = 0; i < w.pairs && i < 64; i++) {
+        const mpm_node *a = &w.node[w.pair[i].a], *b = &w.node[w.pair[i].b];
+        taken = check_worst(taken, fabs((double)a->momentum[2] - before[i]) / (double)(limit > 0 ? limit : 1));
+        left = check_worst(left, fabs(fabs((double)(a->momentum[2] / a->mass - b->momentum[2] / b->mass)) - 20));
+    }
+    if (limit > 0) CHECK_NEAR("... as far as it can bear", taken, 1, 1e4 * eps);
+    else CHECK_NEAR("... held by half: at half the velocity", left, 0, 20 * 1e3 * eps);
+    mpm_free(&w);
+}
+
 /* ---- a rule per pair ------------------------------------------------------------------------ */
 
 static mpm_contact rule_of(mpm_contact_law law, mpm_real friction)
@@ -1176,6 +1205,10 @@ int main(void)
         for (k = 0; k < 3; k++) outer_force(MPM_3D, basis, floor[k], 0);
         pairs(basis);
         if (basis <= MPM_GIMP) strength(basis);
+    }
+    for (k = 0; k < MPM_SCHEMES; k++) {
+        softened((mpm_scheme)k, 0);
+        softened((mpm_scheme)k, MPM_R(1e-3));
     }
     node_push();
     pair_at_mirror();

@@ -604,6 +604,41 @@ static void test_vtu(void)
     CHECK_EQUAL("no points", mpm_io_vtu(FOLDER "/empty.vtu", &d, &f), MPM_OK);
 }
 
+/* What no VTU can hold is refused by name; what XML has its own signs for is written with theirs. */
+static void test_vtu_refused(void)
+{
+    static const struct { int components; size_t count; int fields; const char *field; } bad[] = {
+        {0, 1, 1, "components of field"}, {10, 1, 1, "components of field"}, {-2, 1, 1, "components of field"},
+        {1, 2147483648u, 1, "count"},     {1, 1, -1, "field_count"},
+    };
+    static mpm_real x[1];
+    static uint8_t flag[1];
+    const char *path = FOLDER "/signs.vtu";
+    mpm_io_vtu_desc d = mpm_io_vtu_desc_default();
+    mpm_io_field field = mpm_io_scalar("a & \"b\" 'c' <d>", x, 1);
+    mpm_fault f;
+    size_t k;
+    d.count = 1;
+    d.x[0] = d.x[1] = d.x[2] = x;
+    d.fields = &field;
+    d.field_count = 1;
+    CHECK_EQUAL("signs of XML in a name", mpm_io_vtu(path, &d, &f), MPM_OK);
+    CHECK_TRUE("... are written out", contains(path, "\"a &amp; &quot;b&quot; &apos;c&apos; &lt;d&gt;\""));
+    for (k = 0; k < sizeof bad / sizeof *bad; k++) {
+        mpm_io_field wrong = bad[k].components < 0 ? mpm_io_uint8("flags", flag) : mpm_io_scalar("one", x, 1);
+        mpm_io_vtu_desc e = d;
+        wrong.components = bad[k].components < 0 ? -bad[k].components : bad[k].components;
+        e.fields = &wrong;
+        e.count = bad[k].count;
+        e.field_count = bad[k].fields;
+        CHECK_EQUAL(bad[k].field, mpm_io_vtu(FOLDER "/refused.vtu", &e, &f), MPM_ERR_ARGUMENT);
+        CHECK_TRUE("... is named", strcmp(f.field, bad[k].field) == 0);
+    }
+    d.mark = 0;
+    CHECK_EQUAL("a description of one's own", mpm_io_vtu(FOLDER "/refused.vtu", &d, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... nothing is written", !exists(FOLDER "/refused.vtu") && parts_in(FOLDER) == 0);
+}
+
 static void test_pvd(void)
 {
     static const unsigned char zero[] = "<?xml?>\n<VTKFile>\n  <Collection>\n\0\n  </Collection>\n</VTKFile>\n";
@@ -691,6 +726,11 @@ static void test_checkpoint(void)
     in[0] = mpm_blob_of("a", back, sizeof back);
     CHECK_EQUAL("another size", mpm_io_checkpoint_read(path, text, in, 3, &f), MPM_ERR_FILE);
     CHECK_EQUAL("no such file", mpm_io_checkpoint_read(FOLDER "/none", text, in, 3, &f), MPM_ERR_FILE);
+    CHECK_EQUAL("fewer blobs than none", mpm_io_checkpoint_write(damaged, text, out, -1, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... are named", strcmp(f.field, "count of blobs") == 0);
+    out[2].bytes = 1;
+    CHECK_EQUAL("a byte that is nowhere", mpm_io_checkpoint_write(damaged, text, out, 3, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... is named", strcmp(f.field, "data of blob") == 0 && f.index == 2);
 }
 
 /* A file of another text is told by the first line that differs. */
@@ -791,6 +831,7 @@ static void test_restart(void)
     static int32_t numbers[4000];
     const char *path = FOLDER "/world.mpm";
     char text[4000];
+    mpm_contact rule = mpm_desc_default().contact;
     mpm_world whole, first, second;
     mpm_fault f;
     CHECK_EQUAL("a world", make_world(&whole), MPM_OK);
@@ -830,6 +871,11 @@ static void test_restart(void)
     second.desc.scheme = (mpm_scheme)(MPM_SCHEMES - 1 - (int)second.desc.scheme);
     CHECK_EQUAL("another scheme", load(path, &second, &f), MPM_ERR_VERSION);
     CHECK_TRUE("... is named", strncmp(f.field, "scheme ", 7) == 0);
+    rule.friction = MPM_R(0.25);
+    CHECK_EQUAL("a rule for one pair", mpm_contact_set(&first, 0, 1, &rule), MPM_OK);
+    mpm_io_world_text(text, sizeof text, &first);
+    CHECK_TRUE("... is in the text", strstr(text, "\nrule 0 bodies 0 1\n") && strstr(text, "contact.friction 0.25\n"));
+    CHECK_EQUAL("... without it the file is another's", load(path, &first, &f), MPM_ERR_VERSION);
     mpm_free(&whole);
     mpm_free(&first);
     mpm_free(&second);
@@ -1027,6 +1073,7 @@ int main(void)
     test_json();
     test_csv();
     test_vtu();
+    test_vtu_refused();
     test_pvd();
     test_checkpoint();
     test_text();

@@ -54,6 +54,9 @@ static int darkness(const mpm_draw_canvas *c, int left, int top, int right, int 
 static void test_drawing(void)
 {
     mpm_draw_canvas c;
+    /* degree, squared, cubed, middle dot, times, minus */
+    static const char *const sign[6] = {"\xc2\xb0", "\xc2\xb2", "\xc2\xb3", "\xc2\xb7", "\xc3\x97", "\xe2\x88\x92"};
+    int ink[6], twice = 0;
     char every[96];
     double sum = 0;
     int x, y, k;
@@ -83,6 +86,14 @@ static void test_drawing(void)
         if (darkness(&c, 0, 0, 46, 100) > 0 || darkness(&c, 0, 0, 200, 35) > 0) break;
     }
     CHECK_EQUAL("every character leaves ink in its place", k, 95);
+    for (k = 0; k < 6; k++) {
+        mpm_draw_fill(&c, 0xffffff);
+        mpm_draw_text(&c, 50, 60, 18, MPM_DRAW_LEFT, 0, sign[k]);
+        ink[k] = darkness(&c, 46, 35, 200, 100);
+        for (x = 0; x < k; x++) twice += ink[x] == ink[k];
+        CHECK_TRUE("signs beyond ASCII leave ink", ink[k] > 0);
+    }
+    CHECK_EQUAL("... each its own", twice, 0);
     CHECK_NEAR("micro is one character", mpm_draw_text_width(9, "\xc2\xb5"),
                mpm_draw_text_width(9, "u"), 1e-9);
     CHECK_NEAR("broken text ends", mpm_draw_text_width(9, "\xe2"), mpm_draw_text_width(9, "\x80"),
@@ -232,6 +243,40 @@ static void test_cut(void)
     CHECK_EQUAL("no panels", mpm_draw_cuts(&c, panels, 0, 2, 400, &f), MPM_ERR_ARGUMENT);
     panels[1].spacing = 0;
     CHECK_EQUAL("a panel without spacing", mpm_draw_cuts(&c, panels, 2, 2, 400, &f), MPM_ERR_ARGUMENT);
+}
+
+/* The longest row of ink in a line of pixels. */
+static int longest(const mpm_draw_canvas *c, int y)
+{
+    int x, run = 0, most = 0;
+    for (x = 0; x < c->width; x++) {
+        run = mpm_draw_pixel(c, x, y) != 0xffffff ? run + 1 : 0;
+        most = run > most ? run : most;
+    }
+    return most;
+}
+
+/* The colour bar below a cut is pointed where values lie beyond its numbers, and square where none do. */
+static void test_ends(void)
+{
+    int pointed, y, last, most;
+    mpm_draw_canvas c;
+    mpm_fault f;
+    for (pointed = 0; pointed < 2; pointed++) {
+        mpm_draw_cut_desc d = make_cut();
+        d.label = "value";
+        if (pointed) {
+            d.low = 0.4;
+            d.high = 0.6;
+        }
+        mpm_draw_canvas_init(&c, 432, 432, NULL, 0);
+        CHECK_EQUAL("a cut with a bar", mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f), MPM_OK);
+        for (y = 431; y > 0 && longest(&c, y) < 150;) y--;
+        for (last = most = longest(&c, y); y > 0 && longest(&c, y) >= 150; y--)
+            most = longest(&c, y) > most ? longest(&c, y) : most;
+        CHECK_EQUAL("... whose ends are pointed or square", most > last + 5, pointed);
+        mpm_draw_canvas_free(&c);
+    }
 }
 
 /* A cut through a world knows its bodies, their spacings and who is retired. */
@@ -423,6 +468,24 @@ static void test_plots(void)
     CHECK_EQUAL("written", mpm_io_png(FOLDER "/plots.png", c.rgb, c.width, c.height, NULL, &f), MPM_OK);
     p.log_x = p.log_y = 1;
     CHECK_EQUAL("logarithmic, where positive", mpm_draw_plot(&c, mpm_draw_tile(&c, 2, 1, 0), &p, &f), MPM_OK);
+    p.window[0] = p.window[2] = 1e-6;
+    p.window[1] = p.window[3] = 1e3;
+    mpm_draw_fill(&c, 0xffffff);
+    CHECK_EQUAL("... over nine powers of ten", mpm_draw_plot(&c, mpm_draw_tile(&c, 2, 1, 0), &p, &f), MPM_OK);
+    CHECK_TRUE("... written at its axes", darkness(&c, 0, 0, 60, 380) > 100);
+    memset(p.window, 0, sizeof p.window);
+    p.mark = 0;
+    CHECK_EQUAL("a plot of one's own description", mpm_draw_plot(&c, mpm_draw_tile(&c, 2, 1, 0), &p, &f),
+                MPM_ERR_ARGUMENT);
+    p.mark = MPM_MARK;
+    c.unit = 1e300;
+    CHECK_EQUAL("a scatter plot without place", mpm_draw_scatter(&c, mpm_draw_tile(&c, 2, 1, 1), &s, &f),
+                MPM_ERR_ARGUMENT);
+    c.unit = 1;
+    s.mark = 0;
+    CHECK_EQUAL("... of one's own description", mpm_draw_scatter(&c, mpm_draw_tile(&c, 2, 1, 1), &s, &f),
+                MPM_ERR_ARGUMENT);
+    s.mark = MPM_MARK;
     curves[0].count = curves[1].count = 0;
     CHECK_EQUAL("nothing to plot", mpm_draw_plot(&c, mpm_draw_tile(&c, 2, 1, 0), &p, &f), MPM_ERR_ARGUMENT);
     for (i = 0; i < 3; i++) {
@@ -551,6 +614,7 @@ int main(void)
     test_drawing();
     test_colours();
     test_cut();
+    test_ends();
     test_world();
     test_numbers();
     test_ticks();

@@ -147,7 +147,8 @@ mkdir "$dir/release"
 check "the archive unpacks" tar xzf "build/mpm-$version.tar.gz" -C "$dir/release"
 check "... and packs itself again" make -s -C "$dir/release/mpm-$version" dist CC="$cc"
 check "... with the same files" sh -c "tar tzf 'build/mpm-$version.tar.gz' >'$dir/list' &&
-    tar tzf '$dir/release/mpm-$version/build/mpm-$version.tar.gz' | sort >'$dir/again' && sort '$dir/list' | diff - '$dir/again'"
+    tar tzf '$dir/release/mpm-$version/build/mpm-$version.tar.gz' | sort >'$dir/again' &&
+    sort '$dir/list' | diff - '$dir/again'"
 check "... and the same mpm_all.h" cmp build/mpm_all.h "$dir/release/mpm-$version/build/mpm_all.h"
 check "... and builds its programs" make -s -C "$dir/release/mpm-$version" build/material CC="$cc" CFLAGS=-O0
 check "no header is missing in mpm_all.h" sh -c 'for h in mpm*.h; do grep -q "^/\* $h - " build/mpm_all.h || exit 1; done'

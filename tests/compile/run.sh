@@ -26,11 +26,10 @@ only() { # object, pattern: main is there, and each of its external symbols fits
 headers=$(ls mpm*.h)
 for h in $headers; do
     s=$(symbol "$h")
-    printf '#define MPM_IMPLEMENTATION\n#include "%s"\n#include "%s"\nint main(int n, char **a) { (void)a; return n > 9 ? (int)(%s) : 0; }\n' \
-        "$h" "$h" "$s" >"$dir/whole.c"
+    main="int main(int n, char **a) { (void)a; return n > 9 ? (int)($s) : 0; }"
+    printf '#define MPM_IMPLEMENTATION\n#include "%s"\n#include "%s"\n%s\n' "$h" "$h" "$main" >"$dir/whole.c"
     printf '#include "%s"\nint other(void);\nint other(void) { return (int)(%s); }\n' "$h" "$s" >"$dir/user.c"
-    printf '#define MPM_STATIC\n#include "%s"\nint main(int n, char **a) { (void)a; return n > 9 ? (int)(%s) : 0; }\n' \
-        "$h" "$s" >"$dir/static.c"
+    printf '#define MPM_STATIC\n#include "%s"\n%s\n' "$h" "$main" >"$dir/static.c"
     cp "$dir/whole.c" "$dir/whole.cpp"
     cp "$dir/user.c" "$dir/user.cpp"
     for real in double float; do
@@ -39,13 +38,15 @@ for h in $headers; do
         for cc in gcc clang; do
             command -v $cc >/dev/null || continue
             check "$h $real $cc c99, twice, alone" $cc -std=c99 $strict $flag -O1 "$dir/whole.c" -o "$dir/whole" -lm
-            check "$h $real $cc c99, two units" $cc -std=c99 $strict $flag "$dir/whole.c" "$dir/user.c" -o "$dir/two" -lm
+            check "$h $real $cc c99, two units" $cc -std=c99 $strict $flag "$dir/whole.c" "$dir/user.c" \
+                -o "$dir/two" -lm
             check "$h $real $cc c99, static" $cc -std=c99 $strict $flag -O1 "$dir/static.c" -o "$dir/static" -lm
             check "$h $real $cc header only" $cc -std=c99 $strict $flag -c "$dir/user.c" -o "$dir/user.o"
         done
         for cxx in g++ clang++; do
             command -v $cxx >/dev/null || continue
-            check "$h $real $cxx c++11" $cxx -std=c++11 -Wall -Wextra -Werror -I. $flag "$dir/whole.cpp" "$dir/user.cpp" -o "$dir/cpp" -lm
+            check "$h $real $cxx c++11" $cxx -std=c++11 -Wall -Wextra -Werror -I. $flag \
+                "$dir/whole.cpp" "$dir/user.cpp" -o "$dir/cpp" -lm
         done
         if command -v nm >/dev/null; then
             rm -f "$dir/whole.o" "$dir/static.o"

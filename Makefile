@@ -111,14 +111,14 @@ BUDGET ?= full
 spray-study: build/spray_study ## source B's results again: a quarter of an hour, resumable; BUDGET=quick: less
 	build/spray_study --budget $(BUDGET)
 
-# fuzz needs clang with libFuzzer; hard takes what it finds of tools and skips the others.
+# fuzz needs clang with libFuzzer; hard takes what it finds of tools and skips the others. CHECKS="gcc kill": these only.
 SECONDS ?= 20
 fuzz: ## random inputs for everything that reads or describes: SECONDS=20 for each target of tests/fuzz
 	@CC="$(CC)" sh tests/fuzz/run.sh $(SECONDS) $(JOBS)
 
-KILLS ?= 20
-hard: ## memory and disks that fail, kill -9, sanitizers, analysers, compilers: writes docs/quality.md; KILLS=20
-	@sh tests/hard/run.sh $(KILLS)
+KILLS ?= 200
+hard: ## memory and disks that fail, kill -9, sanitizers, analysers, compilers: writes docs/quality.md; KILLS=200
+	@sh tests/hard/run.sh $(KILLS) $(JOBS) $(CHECKS)
 
 coverage: ## lines and branches of the headers that the test programs reach (a quarter of an hour)
 	@sh tests/coverage.sh "$(wildcard tests/[0-9]*.c)"

@@ -1,5 +1,5 @@
-/* kill DIR STEPS - a run that writes a checkpoint and a frame of a series every 20 steps, goes on from the checkpoint it
-   finds, and at the end writes its state to DIR/end. SPDX-License-Identifier: MIT */
+/* kill DIR STEPS - a run that writes a checkpoint and a frame of a series every 20 steps, goes on from the checkpoint
+   it finds, and at the end writes its state to DIR/end. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "../fuzz/scene.h"
 #include <stdio.h>

@@ -1,94 +1,204 @@
 #!/bin/sh
-# sh tests/hard/run.sh KILLS: what goes wrong outside of the library, and what other tools say of it. Each line is
-# "name: ok", "found N: ...", or "skip: reason"; the same lines, with the tools' versions, become docs/quality.md.
-# Exit 1 if anything was found.
+# sh tests/hard/run.sh KILLS JOBS [CHECK...]: what goes wrong outside of the library, and what other tools say of it,
+# JOBS checks at a time. Each gives one line, "name: ok", "found: ...", or "skip: reason"; the lines of all checks, with
+# the tools' versions, become docs/quality.md. Exit 1 if anything was found.
 set -u
-kills=${1:-20}
 dir=build/hard
-page=$dir/quality.md
 flags="-std=c99 -ffp-contract=off -DMPM_NO_INLINE -I. -Iexamples -Iexamples/studies -Itests"
-strict="-std=c99 -pedantic -Wall -Wextra -Wconversion -Wshadow -Werror -I."
-bad=0
-mkdir -p $dir
-: >$dir/table
+strict="-std=c99 -pedantic -Wall -Wextra -Wconversion -Wshadow -Werror -DMPM_NO_INLINE -I."
+impact="$dir/impact --quiet --time 1 --spacing 0.75"
+all="allocations stdout full readonly nofolder kill address memory threads valgrind analyzer cppcheck tidy
+gcc clang tcc musl m32 mingw s390x armhf bare"
+. tests/check.sh
+
+# ---- one check -------------------------------------------------------------------------------
 line() { # name, result, tool
-    printf '%-28s %s\n' "$1" "$2"
-    printf '| %s | %s | %s |\n' "$1" "$2" "${3:-}" >>$dir/table
-    case $2 in found*) bad=1 ;; esac
+    printf '%-38s %s\n' "$1" "$2"
+    printf '| %s | %s | %s |\n' "$1" "$2" "${3:-}" >"$dir/$check.line"
 }
 version() { "$1" --version 2>/dev/null | head -n 1 | tr '|' ' '; }
 have() { command -v "$1" >/dev/null 2>&1; }
-# name, tool, log, command...: ok, or the number of lines in the log that name a fault
-try() {
-    name=$1 tool=$2 log=$dir/$3
-    shift 3
-    if ! have "$tool"; then line "$name" "skip: $tool is not installed"; return; fi
-    if timeout 900 "$@" >"$log" 2>&1; then line "$name" ok "$(version "$tool")"
-    else line "$name" "found $(grep -cE 'error|ERROR|warning|WARNING|not ok|wrong|differ' "$log"): see $log" "$(version "$tool")"; fi
+try() { # name, tool, command...: the command's output goes to a log; its failure is a finding
+    name=$1 tool=$2
+    shift 2
+    have "$tool" || { line "$name" "skip: $tool is not installed"; return; }
+    if "$@" >"$dir/$check.log" 2>&1; then line "$name" "ok${note:+, $note}" "$(version "$tool")"
+    else line "$name" "found: see $dir/$check.log" "$(version "$tool")"; fi
 }
+limited() { timeout 1500 nice "$@"; }
+in_folder() { # program...: run in a folder of its own, as it would be beside build/
+    mkdir -p "$dir/$check.run" && (cd "$dir/$check.run" && mkdir -p build && "$@")
+}
+here=$(pwd)/$dir
 
 # ---- failures of the machine
-try "allocations fail" cc memory.log sh -c "cc $flags -O1 tests/hard/memory.c -o $dir/memory -lm && $dir/memory"
-impact=$dir/impact
-cc $flags -O1 examples/impact.c -o $impact -lm || exit 1
-if [ -w /dev/full ]; then
-    if $impact --help >/dev/full 2>/dev/null; then line "standard output full" "found 1: impact --help exits 0"
-    else line "standard output full" ok; fi
-else line "standard output full" "skip: no /dev/full"; fi
-full=$dir/full
-mkdir -p $full
-if [ "$(id -u)" = 0 ] && mount -t tmpfs -o size=64k tmpfs $full 2>/dev/null; then
-    if $impact --quiet --time 1 --spacing 0.75 --frames 2 --out $full >/dev/null 2>&1; then line "disk full" "found 1: impact exits 0"
-    elif [ -n "$(find $full -name '*.part*')" ]; then line "disk full" "found 1: parts of files stay"
-    else line "disk full" ok; fi
-    umount $full
-else line "disk full" "skip: no right to mount a small disk"; fi
-: >$dir/file
-if $impact --quiet --time 1 --spacing 0.75 --frames 0 --out $dir/file/below >/dev/null 2>&1; then
-    line "folder that cannot be made" "found 1: impact exits 0"
-else line "folder that cannot be made" ok; fi
-try "kill -9, then go on" cc kill.log sh tests/hard/kill.sh "$kills"
+refuses() { # name, command...: it says no by its exit status; a crash is no answer
+    name=$1
+    shift
+    "$@" >"$dir/$check.log" 2>&1
+    status=$?
+    if [ $status = 0 ]; then line "$name" "found: it exits with 0"
+    elif [ $status -gt 125 ]; then line "$name" "found: it dies of $status, see $dir/$check.log"
+    else line "$name" ok; fi
+}
+fails_in_turn() { cc $flags -O1 tests/hard/memory.c -o $dir/memory -lm && limited $dir/memory; }
+check_allocations() {
+    try "every allocation fails in turn" cc fails_in_turn
+    tail -n 1 $dir/allocations.log | grep -q ', 0 wrong$' || line "every allocation fails in turn" "found: it dies"
+}
+check_stdout() {
+    [ -c /dev/full ] || { line "standard output full" "skip: no /dev/full"; return; }
+    refuses "standard output full" sh -c "$dir/impact --help >/dev/full"
+}
+small_disk() { # folder, options
+    mkdir -p "$1"
+    [ "$(id -u)" = 0 ] && mount -t tmpfs -o "$2" tmpfs "$1" 2>/dev/null
+}
+check_full() {
+    small_disk $dir/full size=64k || { line "disk full" "skip: no right to mount a small disk"; return; }
+    refuses "disk full" $impact --frames 2 --out $dir/full
+    [ -z "$(find $dir/full -name '*.part*')" ] || line "disk full" "found: parts of files stay"
+    umount $dir/full
+}
+check_readonly() {
+    small_disk $dir/readonly ro || { line "folder that cannot be written" "skip: no right to mount a disk"; return; }
+    refuses "folder that cannot be written" $impact --frames 0 --out $dir/readonly
+    umount $dir/readonly
+}
+check_nofolder() {
+    : >$dir/file
+    refuses "folder that cannot be made" $impact --frames 0 --out $dir/file/below
+}
+check_kill() {
+    try "kill -9 at $kills moments, then on" cc limited sh tests/hard/kill.sh "$kills"
+}
 
 # ---- readers of the source
-for h in mpm*.h; do printf '#define MPM_IMPLEMENTATION\n#include "%s"\n' "$h" >$dir/only_${h%.h}.c; done
-try "gcc -fanalyzer" gcc analyzer.log sh -c "for f in $dir/only_*.c; do gcc $flags -O1 -fanalyzer -Werror -c \$f -o /dev/null || exit 1; done"
-try "cppcheck" cppcheck cppcheck.log cppcheck -q --error-exitcode=9 --std=c99 --enable=warning -D__GNUC__ -DMPM_NO_INLINE -I. mpm.c
-try "clang-tidy" clang-tidy tidy.log clang-tidy --quiet "--checks=-*,bugprone-*,clang-analyzer-*,-bugprone-easily-swappable-parameters,-bugprone-implicit-widening-of-multiplication-result,-bugprone-reserved-identifier,-bugprone-macro-parentheses,-bugprone-narrowing-conversions,-clang-analyzer-security.insecureAPI.*" --warnings-as-errors=* mpm.c -- $flags
-
-# ---- compilers
-for c in gcc clang tcc musl-gcc "gcc -m32" x86_64-w64-mingw32-gcc s390x-linux-gnu-gcc arm-linux-gnueabihf-gcc arm-none-eabi-gcc; do
-    tool=${c%% *}
-    opts=$strict
-    [ "$tool" = tcc ] && opts="-I."
-    name=$(echo "$c" | tr -d ' -')
-    if [ "$c" = "gcc -m32" ] && ! echo 'int main(void) { return 0; }' | gcc -m32 -include stdio.h -x c - -o $dir/m32 2>/dev/null; then
-        line "compiler $c" "skip: gcc's 32 bit library is not installed"
-        continue
-    fi
-    try "compiler $c" "$tool" "compiler_$name.log" sh -c "$c $opts -DMPM_NO_INLINE -c mpm.c -o $dir/$name.o && $c $opts -DMPM_NO_INLINE -DMPM_FLOAT -c mpm.c -o $dir/$name.o"
-done
-
-# ---- sanitizers: the tests of the step, of files, pictures and sprays
-san() { # name, tool, options
-    try "$1" clang "$2.log" sh -c "
-        for t in 21_world 40_io 51_spray_input; do
-            clang $flags -O1 -g $3 tests/\$t.c -o $dir/$2_\$t -lm && $dir/$2_\$t >$dir/$2_\$t.log || { cat $dir/$2_\$t.log; exit 1; }
-        done"
+check_analyzer() { # it loses sight of short arrays that loops over 0, 1, 2 fill; valgrind and clang's sanitizer do not
+    try "gcc -fanalyzer" gcc limited gcc $flags -O1 -fanalyzer -Wno-analyzer-use-of-uninitialized-value -Werror \
+        -c mpm.c -o /dev/null
 }
-san "address, undefined, casts" asan "-fsanitize=address,undefined,float-cast-overflow,implicit-integer-sign-change -fno-sanitize-recover=all"
-san "uninitialised memory" msan "-fsanitize=memory -fno-sanitize-recover=all"
-try "two threads, one material" clang tsan.log sh -c "clang $flags -O1 -g -fsanitize=thread tests/hard/threads.c -o $dir/threads -lm -lpthread && $dir/threads"
-try "valgrind" valgrind valgrind.log sh -c "cc $flags -O1 -g tests/21_world.c -o $dir/val -lm && valgrind -q --error-exitcode=9 --leak-check=full $dir/val"
+check_cppcheck() {
+    try "cppcheck" cppcheck limited cppcheck -q --error-exitcode=9 --std=c99 --enable=warning -D__GNUC__ \
+        -DMPM_NO_INLINE -I. --suppressions-list=tests/hard/cppcheck.txt mpm.c
+}
+check_tidy() {
+    try "clang-tidy" clang-tidy limited clang-tidy --quiet "--checks=-*,bugprone-*,clang-analyzer-*$(tidy_without)" \
+        "--warnings-as-errors=*" "--header-filter=.*" mpm.c -- $flags
+}
+tidy_without() { # what it is not asked, and why: each a comma, a minus and the name
+    sed 's/#.*//; s/ //g; /^$/d; s/^/,-/' tests/hard/tidy.txt | tr -d '\n'
+}
 
+# ---- compilers: the library in double and float; an impact whose numbers are the first compiler's; the tests of files
+builds() { # options, compiler...
+    options=$1
+    shift
+    for real in "" -DMPM_FLOAT; do limited "$@" $options $real -c mpm.c -o $dir/$check.o || return 1; done
+}
+runs() { # how to run a program ("": as it is), compiler...
+    how=$1
+    shift
+    limited "$@" $flags -O1 tests/compile/agree.c -o $dir/$check.agree -lm &&
+        limited "$@" $flags -O1 tests/40_io.c -o $dir/$check.io -lm || return 1
+    [ "$how" = none ] && return
+    numbers $dir/$check.numbers limited $how $dir/$check.agree && agree $dir/first.numbers $dir/$check.numbers &&
+        in_folder timeout 1500 nice $how $here/$check.io
+}
+both() { # options, how to run, compiler...
+    options=$1 how=$2
+    shift 2
+    builds "$options" "$@" && runs "$how" "$@"
+}
+check_gcc() { try "compiler gcc" gcc both "$strict -O2" "" gcc; }
+check_clang() { try "compiler clang" clang both "$strict -O2" "" clang; }
+check_tcc() { try "compiler tcc" tcc both "-I." "" tcc; }
+check_musl() { try "compiler musl-gcc" musl-gcc both "$strict" "" musl-gcc -static; }
+check_m32() {
+    name="compiler gcc -m32"
+    # Debian's package with asm/ for -m32 may not stand beside a cross compiler: the 64 bit one has the same names.
+    m32="gcc -m32 -msse2 -mfpmath=sse -idirafter /usr/include/$(gcc -print-multiarch 2>/dev/null)"
+    if ! echo 'int main(void) { return 0; }' | $m32 -include errno.h -x c - -o $dir/m32 2>/dev/null; then
+        line "$name" "skip: gcc's 32 bit library is not installed"
+        return
+    fi
+    try "$name" gcc both "$strict" "" $m32
+}
+emulated() { # name, compiler, options, emulator, its options...: only built where there is none to run it
+    name=$1 compiler=$2 options=$3 how=none note="built; no $4 to run it"
+    shift 3
+    have "$1" && how=$* note="run by $1"
+    try "$name" "$compiler" both "$strict" "$how" "$compiler" $options
+}
+check_mingw() {
+    WINEDEBUG=-all WINEPREFIX=$here/wine
+    export WINEDEBUG WINEPREFIX
+    emulated "compiler mingw-w64" x86_64-w64-mingw32-gcc -static wine
+}
+check_s390x() { emulated "compiler s390x, big-endian" s390x-linux-gnu-gcc -static qemu-s390x; }
+check_armhf() { # the emulator hands on numbers of files in 64 bits
+    emulated "compiler armhf, 32 bit" arm-linux-gnueabihf-gcc "-static -D_FILE_OFFSET_BITS=64" qemu-arm
+}
+check_bare() { # its enums are unsigned bytes: that they are not negative is then no question
+    note=built
+    try "compiler arm-none-eabi" arm-none-eabi-gcc builds "$strict -Wno-type-limits -mcpu=cortex-m7 -mthumb" \
+        arm-none-eabi-gcc
+}
+
+# ---- sanitizers: tests of the step, of files, pictures and sprays
+sanitized() { # options
+    for t in 21_world 40_io 41_draw 50_spray 51_spray_input; do
+        limited clang $flags -O1 -g $1 tests/$t.c -o $dir/$check.$t -lm || return 1
+        in_folder timeout 1500 nice $here/$check.$t >$dir/$check.$t.log 2>&1 || { cat $dir/$check.$t.log; return 1; }
+    done
+}
+check_address() {
+    try "address, undefined, casts" clang sanitized "-fsanitize=address,undefined,float-cast-overflow \
+-fsanitize=implicit-integer-sign-change -fno-sanitize-recover=all"
+}
+check_memory() { try "uninitialised memory" clang sanitized "-fsanitize=memory -fno-sanitize-recover=all"; }
+raced() {
+    limited clang $flags -O1 -g -fsanitize=thread tests/hard/threads.c -o $dir/threads -lm -lpthread &&
+        limited $dir/threads
+}
+check_threads() { try "two threads, one material" clang raced; }
+grinds() {
+    limited cc $flags -O1 -g tests/21_world.c -o $dir/grind -lm &&
+        in_folder timeout 1500 nice valgrind -q --error-exitcode=9 --leak-check=full $here/grind
+}
+check_valgrind() { try "valgrind" valgrind grinds; }
+
+# ---- all of them -----------------------------------------------------------------------------
+if [ "$1" = --one ]; then # this script again, as one of the jobs
+    kills=$2
+    check=$3
+    note=
+    check_$check
+    exit 0
+fi
+kills=$1
+jobs=$2
+shift 2
+[ $# -gt 0 ] || set -- $all
+mkdir -p $dir
+rm -f $dir/*.line
+cc $flags -O1 examples/impact.c -o $dir/impact -lm || exit 1
+gcc $flags -O1 tests/compile/agree.c -o $dir/first -lm && numbers $dir/first.numbers $dir/first || exit 1
+echo "$@" | tr ' ' '\n' | xargs -P "$jobs" -n 1 sh "$0" --one "$kills"
+for check in "$@"; do
+    [ -f "$dir/$check.line" ] || line "$check" "found: it did not come to its end"
+done
+! grep -h '| found' $dir/*.line || bad=1
+[ "$*" = "$(echo $all)" ] || exit "${bad:-0}"
 {
     echo "# Quality"
     echo
-    echo "Written by \`make hard\` on $(uname -s) $(uname -m), mpm.h $(sed -n 's/^.define MPM_VERSION "\(.*\)"/\1/p' mpm.h), with $kills kills."
-    echo "\`make fuzz SECONDS=20\` runs the targets of tests/fuzz, \`make coverage\` counts lines and branches."
+    echo "Written by \`make hard\` on $(uname -s) $(uname -m), for mpm.h" \
+        "$(sed -n 's/^.define MPM_VERSION "\(.*\)"/\1/p' mpm.h)."
+    echo "\`make fuzz\` feeds random inputs to the targets of tests/fuzz; \`make coverage\` counts lines and branches."
     echo
     echo "| what | result | tool |"
     echo "|---|---|---|"
-    cat $dir/table
-} >$page
-cp $page docs/quality.md
-exit $bad
+    for check in $all; do cat $dir/$check.line; done
+} >docs/quality.md
+exit "${bad:-0}"

@@ -4,10 +4,7 @@
 
 #include <string.h>
 
-#include "check.h"
-
-/* An action that has to succeed (as a function: the check macros evaluate twice). */
-static void done(const char *what, mpm_status status) { CHECK_EQUAL(what, status, MPM_OK); }
+#include "spray_state.h"
 
 static mpm_real not_a_number(void)
 {

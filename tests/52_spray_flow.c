@@ -8,9 +8,6 @@
 #include "check.h"
 #include "spray_state.h"
 
-/* An action that has to succeed (as a function: the check macros evaluate twice). */
-static void done(const char *what, mpm_status status) { CHECK_EQUAL(what, status, MPM_OK); }
-
 static int books_balance(const mpm_spray *s)
 {
     const mpm_spray_tally *t = &s->tally;

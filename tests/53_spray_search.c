@@ -8,9 +8,6 @@
 #include "check.h"
 #include "spray_state.h"
 
-/* An action that has to succeed (as a function: the check macros evaluate twice). */
-static void done(const char *what, mpm_status status) { CHECK_EQUAL(what, status, MPM_OK); }
-
 static uint64_t dice = 11;
 
 static mpm_real uniform(mpm_real low, mpm_real high) { return low + mpm_spray_random(&dice) * (high - low); }

@@ -1,10 +1,14 @@
-/* spray_state.h - states of sprays, compared and copied. SPDX-License-Identifier: MIT */
+/* spray_state.h - what tests of sprays share: states, compared and copied. SPDX-License-Identifier: MIT */
 #ifndef SPRAY_STATE_H
 #define SPRAY_STATE_H
 
 #include "mpm_spray.h"
+#include "check.h"
 
 #include <string.h>
+
+/* An action that has to succeed. */
+static inline void done(const char *what, mpm_status status) { CHECK_EQUAL(what, status, MPM_OK); }
 
 /* Whether two sprays are in the same state, bit by bit. */
 static inline int same_state(mpm_spray *a, mpm_spray *b)

@@ -160,6 +160,7 @@ typedef double mpm_real;
 #define mpm_support_of mpm_support_of_f32
 #define mpm_support_at mpm_support_at_f32
 #define mpm_support_velocity mpm_support_velocity_f32
+#define mpm_support_mapped mpm_support_mapped_f32
 #define mpm_support_work mpm_support_work_f32
 #define mpm_push mpm_push_f32
 #define mpm_node_push mpm_node_push_f32
@@ -871,12 +872,17 @@ typedef struct mpm_support {
 MPM_API void mpm_support_of(const mpm_world *w, const mpm_run *run, int32_t i, mpm_support *s);
 
 /* Of any place x on the grid [length], as body `body` has it: its slots alone, so that the N sum to less than 1 where
-   some node near x carries nothing of the body. 1; 0 if it has none there, or x is off the grid. Between mpm_locate and
-   mpm_move. Test: 26_extend. */
+   some node near x carries nothing of the body. 1; 0 if it has none there, or x is beyond an open side. Between mpm_locate
+   and mpm_move. Test: 26_extend. */
 MPM_API int mpm_support_at(const mpm_world *w, int32_t body, const mpm_real x[3], mpm_support *s);
 
 /* The grid's velocity at the point, sum N_I P_I / m_I. After mpm_p2g. Test: 26_extend. */
 MPM_API void mpm_support_velocity(const mpm_world *w, const mpm_support *s, mpm_real v[3]);
+
+/* The velocity that MUSL has mapped back from the points, sum N_I v_I: the one that strains them, and that matter moves
+   with. sum N_I P_I / m_I also has the kick that light nodes get from the step's forces. Between mpm_musl and mpm_move.
+   Test: 26_extend. */
+MPM_API void mpm_support_mapped(const mpm_world *w, const mpm_support *s, mpm_real v[3]);
 
 /* An outer force f on a point, N_I f to its nodes: body forces, tractions. What sides forbid is taken out of f; the
    rest is in the ledger: in `impulse`, its work in `walls` (negative: brought in). Between mpm_p2g and
@@ -1465,10 +1471,13 @@ MPM_API int mpm_support_at(const mpm_world *w, int32_t body, const mpm_real x[3]
     one.n = 1;
     for (d = 0; d < 3; d++) {
         const int32_t last = w->nodes_per_axis[d] - n[d];
-        mpm_real t = n[d] == 1 ? 0 : (x[d] - w->desc.origin[d]) / w->desc.cell + (n[d] == 3 ? MPM_R(0.5) : 0);
-        if (!(t >= 0 && t <= (mpm_real)last + 1)) return 0;
-        at.base[d] = (int32_t)t < last ? (int32_t)t : last;
-        t -= (n[d] == 3 ? MPM_R(0.5) : 0) + (mpm_real)(at.base[d] - (n[d] == 1 ? 0 : w->ghost));
+        const mpm_real shift = n[d] == 3 ? MPM_R(0.5) : 0, high = (mpm_real)w->desc.cells[d];
+        mpm_real t = n[d] == 1 ? 0 : (x[d] - w->desc.origin[d]) / w->desc.cell;
+        if (t < 0 && w->desc.side[2 * d] != MPM_SIDE_OPEN) t = 0; /* what lies behind a closed side is on it */
+        if (t > high && w->desc.side[2 * d + 1] != MPM_SIDE_OPEN) t = high;
+        if (!(t >= 0 && t <= high)) return 0;
+        at.base[d] = (int32_t)(t + shift) < last ? (int32_t)(t + shift) : last;
+        t -= (mpm_real)(at.base[d] - (n[d] == 1 ? 0 : w->ghost));
         mpm__weights_axis(&one, d, n[d], &t, mpm__point_size(w, body) / 2, 1 / w->desc.cell);
         for (i = 0; i < n[d]; i++) node[d][i] = mpm__image_node(w, d, at.base[d] + i, &at.flags);
     }
@@ -1496,6 +1505,14 @@ MPM_API void mpm_support_velocity(const mpm_world *w, const mpm_support *s, mpm_
         if (!(n->mass > w->desc.mass_cutoff * w->body[n->body].point_mass)) continue;
         for (d = 0; d < 3; d++) v[d] += s->N[a] * mpm__sign(s, a, d) * n->momentum[d] / n->mass;
     }
+}
+
+MPM_API void mpm_support_mapped(const mpm_world *w, const mpm_support *s, mpm_real v[3])
+{
+    int a, d;
+    v[0] = v[1] = v[2] = 0;
+    for (a = 0; a < s->count; a++)
+        for (d = 0; d < 3; d++) v[d] += s->N[a] * mpm__sign(s, a, d) * w->node[s->slot[a]].velocity[d];
 }
 
 MPM_API void mpm_push(mpm_world *w, const mpm_support *s, const mpm_real f[3])

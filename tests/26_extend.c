@@ -159,12 +159,14 @@ static double slowest(const mpm_world *w)
 /* The furthest that the support of a point's place is from the point's own; nothing is found off the grid. */
 static double places(const mpm_world *w)
 {
-    const mpm_real off[3] = {0, 0, MPM_R(-1.5)};
+    mpm_real off[3] = {0, 0, 10};
     double worst = 0;
     mpm_support one, two;
     int32_t r, i;
     int a, b, d;
     CHECK_EQUAL("... none off the grid", mpm_support_at(w, 0, off, &two), 0);
+    off[0] = MPM_R(-0.001), off[2] = MPM_R(-1.001);
+    CHECK_EQUAL("... what lies behind mirrors is on them", mpm_support_at(w, 0, off, &two), 1);
     for (r = 0; r < w->runs; r++)
         for (i = w->run[r].first; i < w->run[r].first + w->run[r].count; i++) {
             mpm_real x[3], v[3], u[3];

@@ -586,6 +586,7 @@ typedef struct mpm_body_desc {
     mpm_real wave_p, wave_s; /* longitudinal and shear wave speeds: time step and dampers */
     int absorb;              /* faces with a viscous damper: MPM_FACE_BOTTOM | MPM_FACE_RIM (A 3.46) */
     mpm_real absorb_normal, absorb_shear; /* damper factors a and b of A 3.46 (thesis: 1) */
+    mpm_real absorb_spring;  /* springs beside the dampers, for the half space that is not there: 1 is right, 0 none */
     mpm_real shell;          /* thickness of the MPM_POINT_SURFACE layer in spacings */
     int32_t id;              /* number of its first point, the others count on; -1: after the last one made */
 } mpm_body_desc;
@@ -599,6 +600,7 @@ typedef struct mpm_body {
     mpm_real point_mass;     /* mean mass of its points */
     mpm_real mass[2];        /* mass of the points at the damped bottom and circumference */
     mpm_real area[2];        /* area of those faces, where any is damped */
+    int place[3];            /* user fields where its points' first places are, for springs; -1: none */
 } mpm_body;
 
 /* ---- the grid ------------------------------------------------------------------------------ */
@@ -667,7 +669,7 @@ typedef struct mpm_plane {
    f dt . (v_k + v_musl) / 2 on the points, exactly: so kinetic + internal + absorbed + contact + hold
    + walls - work is constant but for the error of the stress work, integrated in time. */
 typedef struct mpm_ledger {
-    double absorbed;     /* energy taken by the viscous dampers */
+    double absorbed;     /* energy taken by the viscous dampers, and held by springs beside them */
     double contact;      /* energy lost in contact: nodal impact and friction */
     double hold;         /* energy lost in holding pairs: bonds */
     double walls;        /* energy lost at rigid walls; less what mpm_push and mpm_node_push brought in */
@@ -872,8 +874,8 @@ typedef struct mpm_support {
 MPM_API void mpm_support_of(const mpm_world *w, const mpm_run *run, int32_t i, mpm_support *s);
 
 /* Of any place x on the grid [length], as body `body` has it: its slots alone, so that the N sum to less than 1 where
-   some node near x carries nothing of the body. 1; 0 if it has none there, or x is beyond an open side. Between mpm_locate
-   and mpm_move. Test: 26_extend. */
+   some node near x carries nothing of the body. 1; 0 if it has none there, or x is beyond an open side. Between
+   mpm_locate and mpm_move. Test: 26_extend. */
 MPM_API int mpm_support_at(const mpm_world *w, int32_t body, const mpm_real x[3], mpm_support *s);
 
 /* The grid's velocity at the point, sum N_I P_I / m_I. After mpm_p2g. Test: 26_extend. */
@@ -1635,9 +1637,39 @@ MPM__KERNEL void mpm__forces_run(mpm_world *w, const mpm_run *r, int k, int ky, 
     mpm__scatter(w, r, k, ky, MPM__FORCE, F);
 }
 
+/* Stiffness of the springs beside the dampers at point i, times its area: 2.5 G/r along the face's normal and 0.4 of
+   that across, r from the middle of the body's upper face. A point load on a half space leaves tractions and
+   displacements that fall as 1/r^2 and 1/r: their ratio is G/r times a number (viscous-spring boundary: Deeks,
+   Randolph, J. Eng. Mech. 120 (1994) 25; Liu, Du, Du, Wang, Wu, Earthq. Eng. Eng. Vib. 5 (2006) 29). */
+static inline mpm_real mpm__spring(const mpm_world *w, const mpm_body *b, int32_t i, mpm_real area)
+{
+    const mpm_shape *s = &b->desc.shape;
+    const mpm_real shear = b->desc.density * b->desc.wave_s * b->desc.wave_s;
+    mpm_real square = 0;
+    int d;
+    for (d = 0; d < 3; d++) {
+        const mpm_real from = w->points.x[d][i] - s->center[d] - (d == 2 ? s->half[2] : 0);
+        if (d != 1 || !mpm__flat(&w->desc)) square += from * from;
+    }
+    return MPM_R(2.5) * b->desc.absorb_spring * shear * area / mpm_sqrt(square);
+}
+
+/* Traction of springs on a point of a damped face, -K u, added to t; vn: how far it is out along the normal. */
+static inline void mpm__spring_pull(const mpm_world *w, const mpm_body *b, int32_t i, mpm_real area,
+                                    const mpm_real *normal, mpm_real *t)
+{
+    const mpm_real stiff = mpm__spring(w, b, i, area);
+    mpm_real u[3] = {0, 0, 0}, un = 0;
+    int d;
+    for (d = 0; d < 3; d++)
+        if (b->place[d] >= 0) u[d] = w->points.x[d][i] - w->points.user[b->place[d]][i];
+    for (d = 0; d < 3; d++) un += u[d] * normal[d];
+    for (d = 0; d < 3; d++) t[d] -= stiff * (MPM_R(0.4) * u[d] + MPM_R(0.6) * un * normal[d]);
+}
+
 /* Viscous dampers of one run: traction -a rho Vp v_n - b rho Vs v_t at the points of the damped
    faces, times the area they represent: of the true face, their share of its mass. The velocity is
-   the grid's at the point, so that the damper takes energy and nothing else. */
+   the grid's at the point, so that the damper takes energy and nothing else. Springs stand beside them on request. */
 static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r)
 {
     const mpm_real dt = w->dt;
@@ -1657,7 +1689,7 @@ static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r)
         for (p = 0; p < n; p++)
             for (face = 0; face < 2; face++) {
                 const int32_t i = at + p;
-                mpm_real v[3], normal[3] = {0, 0, 1}, vn = 0, cn, ct, t[3];
+                mpm_real v[3], normal[3] = {0, 0, 1}, vn = 0, cn, ct, t[3], area;
                 if (!(q->flags[i] & d->absorb & (face ? MPM_FACE_RIM : MPM_FACE_BOTTOM))) continue;
                 if (face) { /* radial, whatever the section */
                     mpm_real x = q->x[0][i] - d->shape.center[0], y = ky > 1 ? q->x[1][i] - d->shape.center[1] : 0;
@@ -1666,13 +1698,15 @@ static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r)
                     normal[1] = radius > 0 ? y / radius : 0;
                     normal[2] = 0;
                 }
-                cn = d->absorb_normal * d->density * d->wave_p * b->area[face] * q->mass[i] / b->mass[face];
-                ct = d->absorb_shear * d->density * d->wave_s * b->area[face] * q->mass[i] / b->mass[face];
+                area = b->area[face] * q->mass[i] / b->mass[face];
+                cn = d->absorb_normal * d->density * d->wave_p * area;
+                ct = d->absorb_shear * d->density * d->wave_s * area;
                 for (c = 0; c < 3; c++) v[c] = mpm__value(&s, p, k, ky, V[c]);
                 for (c = 0; c < 3; c++) vn += v[c] * normal[c];
                 mpm__products(&s, p, k, ky, N);
+                for (c = 0; c < 3; c++) t[c] = -(cn - ct) * vn * normal[c] - ct * v[c];
+                if (d->absorb_spring > 0) mpm__spring_pull(w, b, i, area, normal, t);
                 for (c = 0; c < 3; c++) {
-                    t[c] = -(cn - ct) * vn * normal[c] - ct * v[c];
                     for (a = 0; a < k * ky * k; a++) F[c][a] += t[c] * N[a];
                     w->ledger.absorbed -= (double)(t[c] * v[c] * dt);
                 }
@@ -3719,6 +3753,7 @@ static inline mpm_status mpm__body_check(const mpm_world *w, const mpm_body_desc
     if ((st = mpm_want(b->wave_s >= 0, f, "wave_s", b->wave_s, -1)) != MPM_OK) return st;
     if ((st = mpm_want(b->absorb_normal >= 0, f, "absorb_normal", b->absorb_normal, -1)) != MPM_OK) return st;
     if ((st = mpm_want(b->absorb_shear >= 0, f, "absorb_shear", b->absorb_shear, -1)) != MPM_OK) return st;
+    if ((st = mpm_want(b->absorb_spring >= 0, f, "absorb_spring", b->absorb_spring, -1)) != MPM_OK) return st;
     if ((st = mpm_want(b->id >= -1, f, "id", (mpm_real)b->id, -1)) != MPM_OK) return st;
     return mpm_want(b->shell >= 0, f, "shell", b->shell, -1);
 }
@@ -3997,6 +4032,28 @@ static inline mpm_status mpm__count_inside(const mpm_desc *d, const mpm_body_des
     return MPM_OK;
 }
 
+/* User fields for the first places of a body with springs. */
+static inline mpm_status mpm__places_take(mpm_world *w, const mpm_body_desc *b, int *place)
+{
+    static const char *const name[3] = {"first x", "first y", "first z"};
+    int d;
+    for (d = 0; d < 3; d++) {
+        const int needed = b->absorb && b->absorb_spring > 0 && (d != 1 || !mpm__flat(&w->desc));
+        place[d] = needed ? mpm_field_take(w, name[d]) : -1;
+        if (needed && place[d] < 0) return w->fault.status;
+    }
+    return MPM_OK;
+}
+
+/* Keeps the places of points [first, first + count) of a body with springs. */
+static inline void mpm__places(mpm_world *w, const mpm_body *b, int32_t first, int32_t count)
+{
+    int32_t i;
+    int d;
+    for (d = 0; d < 3; d++)
+        for (i = first; i < first + count && b->place[d] >= 0; i++) w->points.user[b->place[d]][i] = w->points.x[d][i];
+}
+
 MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *desc)
 {
     const mpm_body_desc own = *desc; /* it may be one of the world's, which move */
@@ -4013,10 +4070,11 @@ MPM_API mpm_status mpm_body_add(mpm_world *w, const mpm_body_desc *desc)
         return mpm_fail(f, MPM_ERR_OVERLAP, "overlap with body", (mpm_real)other, other);
     if ((s = mpm__count_inside(&w->desc, &own, &count, f)) != MPM_OK) return s;
     if (count == 0) return mpm_fail(f, MPM_ERR_ARGUMENT, "shape (holds no point at spacing)", own.spacing, -1);
-    if ((s = mpm__room(w, count, 1, 0, 0)) != MPM_OK) return s;
+    if ((s = mpm__room(w, count, 1, 0, 0)) != MPM_OK || (s = mpm__places_take(w, &own, b.place)) != MPM_OK) return s;
     b.desc = own;
     if (own.absorb) mpm__areas(&w->desc, &b);
     if ((s = mpm__fill(w, &b, f)) != MPM_OK) return s;
+    mpm__places(w, &b, w->points.count, b.count);
     return mpm__body_join(w, &b);
 }
 
@@ -4107,6 +4165,7 @@ MPM_API mpm_status mpm_body_add_points(mpm_world *w, const mpm_body_desc *desc, 
     if ((s = mpm__body_check(w, &own, f)) != MPM_OK || (s = mpm__absorb_check(&own, 0, f)) != MPM_OK ||
         (s = mpm__cloud_check(w, w->bodies, &own, c, f)) != MPM_OK || (s = mpm__room(w, c->count, 1, 0, 0)) != MPM_OK)
         return s;
+    mpm__places_take(w, &own, b.place); /* it has no faces, so none */
     b.desc = own;
     b.desc.shape = mpm__cloud_extent(w, c, own.spacing);
     for (b.count = 0; b.count < c->count; b.count++)
@@ -4177,6 +4236,7 @@ MPM_API mpm_status mpm_points_add(mpm_world *w, int32_t body, const mpm_cloud *c
     for (i = 0; i < c->count; i++) {
         const int32_t place = mpm__open_place(w, body);
         mpm__put_cloud(w, &w->body[body].desc, c, i, place);
+        mpm__places(w, &w->body[body], place, 1);
         w->points.id[place] = w->next_id++;
         w->body[body].count++;
         w->body[body].active++;

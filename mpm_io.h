@@ -1598,6 +1598,7 @@ static inline void mpm__io_body_text(mpm__io_page *t, const mpm_body_desc *b)
     mpm__io_whole(t, "absorb", b->absorb);
     mpm__io_real(t, "absorb_normal", b->absorb_normal);
     mpm__io_real(t, "absorb_shear", b->absorb_shear);
+    mpm__io_real(t, "absorb_spring", b->absorb_spring);
     mpm__io_real(t, "shell", b->shell);
     mpm__io_whole(t, "id", b->id);
 }

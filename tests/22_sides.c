@@ -235,9 +235,81 @@ static void held(mpm_basis basis, const char *name)
     mpm_free(&w);
 }
 
+/* A uniform load on a disk of the free face of what is left of a half space: depth of its middle below that of the
+   whole half space, 2 (1 - nu^2) p a / E, after a time and after twice as long. Energy: what the ledger misses over
+   the work of the load. */
+static void loaded(double wide, double spring, mpm_basis basis, double *depth, double *missed)
+{
+    const double a = 3, p = 50;
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(1, (int)wide + 4, 1, (int)wide + 8, 0, 0, -wide - 4);
+    mpm_body_desc b = scene_body(&m, mpm_cylinder(0, 0, (mpm_real)-wide, (mpm_real)wide, (mpm_real)wide), 0.5, 0);
+    const double nu = (double)m.poisson, exact = 2 * (1 - nu * nu) * p * a / (double)m.young;
+    mpm_totals t;
+    mpm_world w;
+    int half, n;
+    int32_t r, i;
+    d.geometry = MPM_AXISYMMETRIC;
+    d.basis = basis;
+    d.side[0] = MPM_SIDE_SYMMETRY;
+    b.absorb = MPM_FACE_BOTTOM | MPM_FACE_RIM;
+    b.absorb_spring = (mpm_real)spring;
+    mpm_init(&w, &d, NULL, 0);
+    CHECK_EQUAL("a half space: body", mpm_body_add(&w, &b), MPM_OK);
+    for (half = 0; half < 2; half++) {
+        double sum = 0;
+        int count = 0;
+        for (n = 0; n < 700; n++) {
+            if (mpm_locate(&w, MPM_R(3e-5)) < 0) break;
+            mpm_p2g(&w);
+            mpm_forces(&w);
+            for (r = 0; r < w.runs; r++)
+                for (i = w.run[r].first; i < w.run[r].first + w.run[r].count; i++) {
+                    mpm_support s;
+                    mpm_real f[3] = {0, 0, 0};
+                    if (!(w.points.flags[i] & MPM_FACE_TOP) || (double)w.points.x[0][i] > a) continue;
+                    f[2] = (mpm_real)(-p * 2 * 3.14159265358979 * 0.5) * w.points.x[0][i];
+                    mpm_support_of(&w, &w.run[r], i, &s);
+                    mpm_push(&w, &s, f);
+                }
+            mpm_grid_update(&w);
+            mpm_g2p(&w);
+            mpm_musl(&w);
+            if (mpm_stress(&w) < 0) break;
+            mpm_move(&w);
+        }
+        for (i = 0; i < w.points.count; i++)
+            if ((w.points.flags[i] & MPM_FACE_TOP) && w.points.x[0][i] < MPM_R(0.6)) {
+                sum -= (double)w.points.x[2][i] + 0.25;
+                count++;
+            }
+        depth[half] = sum / count / exact;
+    }
+    t = mpm_body_totals(&w, 0);
+    *missed = (t.kinetic + t.internal + w.ledger.absorbed + w.ledger.walls) / -w.ledger.walls;
+    mpm_free(&w);
+}
+
+static void half_space(mpm_basis basis)
+{
+    double small[2], large[2], bare[2], missed;
+    loaded(12, 0, basis, bare, &missed);
+    loaded(12, 1, basis, small, &missed);
+    CHECK_NEAR("a half space with springs: energy", missed, 0, 0.01);
+    loaded(20, 1, basis, large, &missed);
+    printf("# %s: depth over the half space's %.3f then %.3f on 12 um, %.3f then %.3f on 20 um; dampers alone %.3f, "
+           "%.3f\n", scene_basis(basis), small[0], small[1], large[0], large[1], bare[0], bare[1]);
+    CHECK_NEAR("... stands still, but for what still swings", small[1] / small[0], 1, 0.04);
+    CHECK_NEAR("... where the half space does", small[1], 1, 0.15);
+    CHECK_NEAR("... however much of it there is", small[1] / large[1], 1, 0.05);
+    CHECK_TRUE("dampers alone let it sink", bare[1] > 1.3 * bare[0] && bare[1] > 1.3);
+}
+
 int main(void)
 {
     int basis;
+    half_space(MPM_LINEAR);
+    half_space(MPM_CUBIC);
     gravity();
     sides();
     sliding(0);

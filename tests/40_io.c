@@ -896,7 +896,7 @@ static void lengthen_body(mpm_body_desc *b, mpm_real longest)
     int d;
     for (d = 0; d < 3; d++) b->shape.center[d] = b->shape.half[d] = b->velocity[d] = longest;
     b->spacing = b->density = b->temperature = b->wave_p = b->wave_s = longest;
-    b->absorb_normal = b->absorb_shear = b->shell = longest;
+    b->absorb_normal = b->absorb_shear = b->absorb_spring = b->shell = longest;
     b->absorb = b->id = -2147483647;
 }
 

@@ -57,6 +57,7 @@ static void change_body(fuzz *f, mpm_body_desc *b)
     FUZZ_CHOICE(f, b->absorb);
     FUZZ_REAL(f, b->absorb_normal);
     FUZZ_REAL(f, b->absorb_shear);
+    FUZZ_REAL(f, b->absorb_spring);
     FUZZ_REAL(f, b->shell);
     b->id = fuzz_int(f, b->id);
 }

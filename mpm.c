@@ -14,3 +14,4 @@
 #include "mpm_measure.h"
 #include "mpm_ptw.h"
 #include "mpm_spray.h"
+#include "mpm_surface.h"

@@ -205,6 +205,8 @@ typedef struct mpm_draw_cut_desc {
     const char *length_unit; /* with the scale bar; NULL: no scale bar */
     double length_scale;    /* printed length = length_scale * length; 1 */
     int ticks;              /* 1: coordinates along the frame instead of a scale bar */
+    size_t line_count;      /* lines to draw over the points: outlines */
+    const double (*lines)[4]; /* from x, z to x, z of the plane [length]; NULL without any */
 } mpm_draw_cut_desc;
 
 /* normal 1, scale 1, map DEEP, style SMOOTH; count, x and spacing must be set ... Test: 41_draw "cut". */
@@ -1558,6 +1560,21 @@ static inline mpm__draw_dot *mpm__draw_cut_gather(const mpm_draw_cut_desc *d, si
     return dots;
 }
 
+/* The lines of a cut, and their mirror images, within its frame. */
+static inline void mpm__draw_cut_lines(mpm_draw_canvas *c, const mpm__draw_axes *a, const mpm_draw_cut_desc *d)
+{
+    int before[4], side;
+    size_t i;
+    mpm__draw_clip(c, a, before);
+    for (i = 0; i < d->line_count; i++)
+        for (side = 0; side <= (d->mirror ? 1 : 0); side++) {
+            const double *l = d->lines[i], sign = side ? -1 : 1;
+            mpm_draw_line(c, mpm__draw_at_x(a, sign * l[0]), mpm__draw_at_y(a, l[1]), mpm__draw_at_x(a, sign * l[2]),
+                          mpm__draw_at_y(a, l[3]), 1.6 * c->unit, MPM__DRAW_INK);
+        }
+    memcpy(c->clip, before, sizeof c->clip);
+}
+
 MPM_API mpm_status mpm_draw_cut(mpm_draw_canvas *c, mpm_draw_rect where, const mpm_draw_cut_desc *d, mpm_fault *fault)
 {
     mpm__draw_furniture f = mpm__draw_cut_furniture(d);
@@ -1576,6 +1593,7 @@ MPM_API mpm_status mpm_draw_cut(mpm_draw_canvas *c, mpm_draw_rect where, const m
     status = mpm__draw_cut_bodies(c, &a, dots, n, &s, d);
     MPM_FREE(dots);
     if (status < 0) return mpm_fail(fault, status, "layers of the cut", 0, -1);
+    mpm__draw_cut_lines(c, &a, d);
     mpm__draw_frame(c, &a);
     mpm__draw_heading(c, &a, &f);
     printed = mpm__draw_printed(&a, &f);

@@ -277,13 +277,16 @@ typedef struct mpm_io_vtu_desc {
     double time;                /* stored as TimeValue */
     int float32;                /* 1: reals as Float32, half the size; 0: as mpm_real */
     const char *note;           /* kept in a comment: what made this file; or NULL */
+    size_t line_count;          /* lines that join points: outlines */
+    const int32_t (*lines)[2];  /* numbers of their points; NULL: the points stand alone, a vertex each */
 } mpm_io_vtu_desc;
 
 /* No points, no fields, scale 1, time 0. Test: 40_io "vtu". */
 MPM_API mpm_io_vtu_desc mpm_io_vtu_desc_default(void);
 
-/* Writes a VTK XML UnstructuredGrid (.vtu) of one vertex per point, data appended raw.
-   MPM_ERR_ARGUMENT for a field without data, name or components; MPM_ERR_FILE. Test: 40_io "vtu". */
+/* Writes a VTK XML UnstructuredGrid (.vtu) of one vertex per point, or of lines between them, data appended raw.
+   MPM_ERR_ARGUMENT for a field without data, name or components, or a line to a point that is not there;
+   MPM_ERR_FILE. Test: 40_io "vtu". */
 MPM_API mpm_status mpm_io_vtu(const char *path, const mpm_io_vtu_desc *d, mpm_fault *fault);
 
 /* numbers[world->points.count]: the body of each point, -1 where it is retired. Test: 40_io "vtu". */
@@ -1016,11 +1019,16 @@ static inline void mpm__io_data_tag(mpm_io_file *f, const char *type, const char
 
 static inline mpm_status mpm__io_vtu_check(const mpm_io_vtu_desc *d, mpm_fault *fault)
 {
+    size_t l;
     int i, k;
     if (d->mark != MPM_MARK)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_io_vtu_desc_default)", (mpm_real)d->mark, -1);
     if (d->count > 2147483647u)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "count", (mpm_real)d->count, -1);
+    for (l = 0; l < d->line_count && d->lines; l++)
+        for (k = 0; k < 2; k++)
+            if (d->lines[l][k] < 0 || (size_t)d->lines[l][k] >= d->count)
+                return mpm_fail(fault, MPM_ERR_ARGUMENT, "point of line", (mpm_real)d->lines[l][k], (int64_t)l);
     if (d->field_count < 0 || (d->field_count > 0 && !d->fields))
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "field_count", (mpm_real)d->field_count, -1);
     for (i = 0; i < d->field_count; i++) {
@@ -1048,7 +1056,7 @@ static inline int mpm__io_little_endian(void)
 static inline void mpm__io_vtu_head(mpm_io_file *f, const mpm_io_vtu_desc *d, size_t real)
 {
     const char *type = real == 4 ? "Float32" : "Float64";
-    uint64_t n = d->count, offset = 0;
+    uint64_t n = d->count, cells = d->lines ? d->line_count : d->count, offset = 0;
     int i;
     mpm_io_put(f, "<?xml version=\"1.0\"?>\n<!-- mpm.h " MPM_VERSION " ");
     if (d->note) mpm__io_put_xml(f, d->note);
@@ -1061,13 +1069,13 @@ static inline void mpm__io_vtu_head(mpm_io_file *f, const mpm_io_vtu_desc *d, si
     mpm_io_put(f, "</DataArray>\n    </FieldData>\n    <Piece NumberOfPoints=\"");
     mpm_io_put_integer(f, (long long)n);
     mpm_io_put(f, "\" NumberOfCells=\"");
-    mpm_io_put_integer(f, (long long)n);
+    mpm_io_put_integer(f, (long long)cells);
     mpm_io_put(f, "\">\n      <Points>\n");
     mpm__io_data_tag(f, type, "Points", 3, 3 * n * real, &offset);
     mpm_io_put(f, "      </Points>\n      <Cells>\n");
-    mpm__io_data_tag(f, "Int32", "connectivity", 1, 4 * n, &offset);
-    mpm__io_data_tag(f, "Int32", "offsets", 1, 4 * n, &offset);
-    mpm__io_data_tag(f, "UInt8", "types", 1, n, &offset);
+    mpm__io_data_tag(f, "Int32", "connectivity", 1, 4 * cells * (d->lines ? 2 : 1), &offset);
+    mpm__io_data_tag(f, "Int32", "offsets", 1, 4 * cells, &offset);
+    mpm__io_data_tag(f, "UInt8", "types", 1, cells, &offset);
     mpm_io_put(f, "      </Cells>\n      <PointData>\n");
     for (i = 0; i < d->field_count; i++) {
         const mpm_io_field *a = &d->fields[i];
@@ -1078,26 +1086,38 @@ static inline void mpm__io_vtu_head(mpm_io_file *f, const mpm_io_vtu_desc *d, si
                    "  <AppendedData encoding=\"raw\">\n_");
 }
 
+/* Connectivity, offsets and types: vertices 0 .. n - 1, or lines. */
+static inline void mpm__io_vtu_cells(mpm_io_file *f, const mpm_io_vtu_desc *d)
+{
+    const size_t cells = d->lines ? d->line_count : d->count;
+    const int32_t ends = d->lines ? 2 : 1;
+    uint64_t bytes = 4 * (uint64_t)cells * (uint64_t)ends;
+    int32_t number;
+    size_t i;
+    int k;
+    mpm_io_put_bytes(f, &bytes, sizeof bytes);
+    for (i = 0; i < cells; i++)
+        for (k = 0; k < ends; k++) {
+            number = d->lines ? d->lines[i][k] : (int32_t)i;
+            mpm_io_put_bytes(f, &number, sizeof number);
+        }
+    bytes = 4 * (uint64_t)cells;
+    mpm_io_put_bytes(f, &bytes, sizeof bytes);
+    for (number = ends, i = 0; i < cells; i++, number += ends) mpm_io_put_bytes(f, &number, sizeof number);
+    bytes = cells;
+    mpm_io_put_bytes(f, &bytes, sizeof bytes);
+    for (i = 0; i < cells; i++) fputc(d->lines ? 3 : 1, f->stream); /* VTK_LINE, VTK_VERTEX */
+}
+
 /* The appended data, in the order of the tags. */
 static inline void mpm__io_vtu_body(mpm_io_file *f, const mpm_io_vtu_desc *d, size_t real)
 {
     mpm_io_field points = mpm_io_vector("Points", d->x[0], d->x[1], d->x[2], d->scale);
     uint64_t bytes = mpm__io_field_bytes(&points, d->count, real);
-    int32_t i, n = (int32_t)d->count;
     int k;
     mpm_io_put_bytes(f, &bytes, sizeof bytes);
     mpm__io_field_values(f, &points, d->count, d->float32);
-    for (k = 0; k < 2; k++) { /* connectivity 0 .. n - 1, then offsets 1 .. n */
-        bytes = 4 * (uint64_t)d->count;
-        mpm_io_put_bytes(f, &bytes, sizeof bytes);
-        for (i = 0; i < n; i++) {
-            int32_t number = i + k;
-            mpm_io_put_bytes(f, &number, sizeof number);
-        }
-    }
-    bytes = d->count;
-    mpm_io_put_bytes(f, &bytes, sizeof bytes);
-    for (i = 0; i < n; i++) fputc(1, f->stream); /* VTK_VERTEX */
+    mpm__io_vtu_cells(f, d);
     for (k = 0; k < d->field_count; k++) {
         bytes = mpm__io_field_bytes(&d->fields[k], d->count, real);
         mpm_io_put_bytes(f, &bytes, sizeof bytes);

@@ -36,15 +36,22 @@ static void describe_picture(const impact *s, const impact_case *c, const output
 static int write_frame(const impact *s, const impact_case *c, output *o)
 {
     output_picture p;
+    int ok;
     describe_picture(s, c, o, &p);
-    return output_frame(o, &s->world, NULL, 0, &p);
+    ok = output_outline(&p, &s->surfaces) && output_surfaces(o, &s->world, &s->surfaces) &&
+         output_frame(o, &s->world, NULL, 0, &p);
+    free(p.outline);
+    return ok;
 }
 
 static int write_picture(const impact *s, const impact_case *c, output *o)
 {
     output_picture p;
+    int ok;
     describe_picture(s, c, o, &p);
-    return output_png(o, &p, "impact.png");
+    ok = output_outline(&p, &s->surfaces) && output_png(o, &p, "impact.png");
+    free(p.outline);
+    return ok;
 }
 
 static int write_summary(const impact *s, const impact_result *r, const output *o, const option *options, int n)
@@ -158,6 +165,11 @@ static int run(impact *s, const impact_case *c, output *o)
         if (output_due(o, w, s->steps) && !write_frame(s, c, o)) return 0;
         if (w->steps >= s->steps) break;
 
+        if (s->surfaces.surfaces > 0) { /* contact on surfaces: mpm_surface.h */
+            if (mpm_surface_step(&s->surfaces, w, s->dt) < 0) return report(&w->fault, "step");
+            output_progress(o, w, s->steps);
+            continue;
+        }
         if (mpm_locate(w, s->dt) < 0) return report(&w->fault, "locate"); /* points in cell order, their nodes */
         mpm_p2g(w);                                  /* A 3.23, 3.24 */
         mpm_forces(w);                               /* A 3.25 - 3.27, 3.45, 3.46 */
@@ -206,7 +218,7 @@ static int carry_out(int argc, char **argv)
     if (!output_check(&o, message, sizeof message) || !impact_begin(&s, &c, message, sizeof message))
         return !complain(message);
     ok = output_begin(&o) && run(&s, &c, &o) && finish(&s, &c, &o, options, n);
-    mpm_free(&s.world);
+    impact_end(&s);
     return ok ? 0 : 1;
 }
 

@@ -9,12 +9,14 @@
 #include "mpm_ptw.h"
 #include "mpm_bond.h"
 #include "mpm_measure.h"
+#include "mpm_surface.h"
 
 /* The words of an option; of others the lists are the library's. */
 #define IMPACT_SHAPES "sphere|ellipsoid"
 #define IMPACT_MODELS "preset" MPM_STRENGTH_LIST(CASE_BAR)
 #define IMPACT_SYMMETRIES "full|half|quarter"
 #define IMPACT_GEOMETRIES "3d|axisymmetric"
+#define IMPACT_CONTACTS "nodes|surface"
 
 /* What to run. Every member is an option of examples/impact; the defaults are its main job. */
 typedef struct impact_case {
@@ -31,10 +33,13 @@ typedef struct impact_case {
     double shell;                                  /* thickness of the surface that contacts and bonds, spacings */
     double friction;
     int touch;                                     /* 1: bodies touch where their points do */
+    double surface_damping;                        /* of contact on surfaces, rho c */
+    int springs;                                   /* 1: the substrate's dampers have springs beside them */
     double gap, offset;                            /* um: start distance; shift of the grid */
     double margin;                                 /* free grid around the bodies, particle diameters */
     const char *shape, *material, *substrate_material, *model; /* "": substrate as particle */
-    const char *bond, *bond_average, *symmetry, *geometry, *functions, *plasticity, *normal, *scheme;
+    const char *bond, *bond_average, *symmetry, *geometry, *functions, *plasticity, *normal, *scheme,
+        *contact;
 } impact_case;
 
 static inline impact_case impact_case_default(void)
@@ -70,6 +75,8 @@ static inline impact_case impact_case_default(void)
     c.plasticity = "consistent";
     c.normal = "ranked";
     c.scheme = "thesis";
+    c.contact = "nodes";
+    c.surface_damping = 1;
     return c;
 }
 
@@ -80,6 +87,7 @@ typedef struct impact {
     mpm_world world;
     mpm_material material[2]; /* of particle and substrate */
     mpm_bond bond;
+    mpm_surfaces surfaces; /* with contact on surfaces; else none */
     mpm_real dt;          /* us */
     int64_t steps;
     mpm_totals start;
@@ -91,6 +99,10 @@ static inline int impact_agrees(const impact_case *c, char *m, size_t n)
     const int round_ball = !strcmp(c->shape, "sphere");
     if (round_ball && (c->aspect < 1 || c->aspect > 1))
         return case_wants(0, "aspect", c->aspect, "a sphere has none: add --shape ellipsoid", m, n);
+    if (!strcmp(c->contact, "surface") && (strcmp(c->geometry, "axisymmetric") || strcmp(c->bond, "none"))) {
+        snprintf(m, n, "--contact surface is axisymmetric and has no bond: add --geometry axisymmetric --bond none");
+        return 0;
+    }
     if (!(fabs(c->angle) > 0)) return 1;
     if (!strcmp(c->geometry, "axisymmetric"))
         return case_wants(0, "angle", c->angle, "an oblique impact is not axisymmetric", m, n);
@@ -163,6 +175,9 @@ static inline int impact_check(const impact_case *c, char *m, size_t n)
            case_knows(MPM_NAMES(MPM_BASIS_LIST), "functions", c->functions, m, n) &&
            case_knows(MPM_NAMES(MPM_NORMAL_LIST), "normal", c->normal, m, n) &&
            case_knows(MPM_NAMES(MPM_SCHEME_LIST), "scheme", c->scheme, m, n) &&
+           case_knows(IMPACT_CONTACTS, "contact", c->contact, m, n) &&
+           case_wants(c->surface_damping >= 0 && c->surface_damping < 1e6, "surface-damping", c->surface_damping,
+                        "must be 0 .. 1e6", m, n) &&
            case_knows(MPM_NAMES(MPM_RETURN_LIST), "plasticity", c->plasticity, m, n) && impact_fits(c, m, n) &&
            impact_agrees(c, m, n);
 }
@@ -258,8 +273,26 @@ static inline mpm_body_desc impact_body(mpm_material *m, const impact_case *c, i
         b.shape = mpm_cylinder(0, 0, (mpm_real)-c->substrate_height, (mpm_real)(c->substrate_diameter / 2),
                                (mpm_real)c->substrate_height);
         b.absorb = MPM_FACE_BOTTOM | MPM_FACE_RIM;
+        b.absorb_spring = (mpm_real)c->springs;
     }
     return b;
+}
+
+/* Outlines for all bodies, where they are to meet by them. Returns 1, or 0 with a message; then nothing is left. */
+static inline int impact_surfaces(impact *s, const impact_case *c, char *message, size_t n)
+{
+    int32_t b;
+    s->surfaces = mpm_surfaces_default();
+    s->surfaces.damping = (mpm_real)c->surface_damping;
+    s->surfaces.friction = (mpm_real)c->friction;
+    for (b = 0; b < s->world.bodies && !strcmp(c->contact, "surface"); b++)
+        if (mpm_surface_add(&s->surfaces, &s->world, b) != MPM_OK) {
+            mpm_io_fault_text(message, n, &s->surfaces.fault);
+            mpm_surfaces_free(&s->surfaces);
+            mpm_free(&s->world);
+            return 0;
+        }
+    return 1;
 }
 
 /* Builds `count` particles at these centres (um) and the substrate, as the last body, in the grid d. Returns 1, or 0
@@ -301,7 +334,14 @@ static inline int impact_build(impact *s, const impact_case *c, mpm_desc d, cons
     }
     s->steps = (int64_t)steps;
     s->start = mpm_body_totals(&s->world, -1);
-    return 1;
+    return impact_surfaces(s, c, message, n);
+}
+
+/* Gives back what a run that began holds. */
+static inline void impact_end(impact *s)
+{
+    mpm_surfaces_free(&s->surfaces);
+    mpm_free(&s->world);
 }
 
 /* Builds the scene. Returns 1, or 0 with a message; then nothing is left to free. The world points
@@ -315,7 +355,11 @@ static inline int impact_begin(impact *s, const impact_case *c, char *message, s
 
 /* One whole step with bonding: the loop of examples/impact.c for programs that need not show it.
    Returns MPM_OK, MPM_RETIRED, or an error with world.fault. */
-static inline mpm_status impact_step(impact *s) { return mpm_bond_step(&s->bond, &s->world, s->dt); }
+static inline mpm_status impact_step(impact *s)
+{
+    if (s->surfaces.surfaces > 0) return mpm_surface_step(&s->surfaces, &s->world, s->dt);
+    return mpm_bond_step(&s->bond, &s->world, s->dt);
+}
 
 /* What came out. Velocities are along z (m/s), lengths in um; areas are those of the whole particle. */
 typedef struct impact_result {
@@ -368,6 +412,8 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
     r.crater = mpm_splat_measure(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE, MPM_R(1e15)).crater; /* deep points move */
     r.contact_area = r.particle_bond.contacted_area * impact_copies(s);
     r.bonded_area = r.particle_bond.bonded_area * impact_copies(s);
+    if (s->surfaces.surfaces > 0)
+        r.contact_area = mpm_surface_meets(&s->surfaces, w, IMPACT_PARTICLE, IMPACT_SUBSTRATE).area;
     r.ejected_fraction = r.rebound.ejected_mass / r.particle.mass;
     energy = s->start.kinetic + s->start.internal;
     r.mass_error = (r.all.mass - s->start.mass) / s->start.mass;
@@ -391,7 +437,7 @@ static inline int impact_run(const impact_case *c, impact_result *r, char *messa
     while (status >= 0 && s.world.steps < s.steps) status = impact_step(&s);
     if (status < 0) mpm_io_fault_text(message, n, &s.world.fault);
     else *r = impact_measure(&s, c);
-    mpm_free(&s.world);
+    impact_end(&s);
     return status >= 0;
 }
 

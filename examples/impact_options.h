@@ -51,6 +51,10 @@ static inline int impact_options(impact_case *c, option *o)
     option_add_word(o, &n, "scheme", &c->scheme, MPM_NAMES(MPM_SCHEME_LIST), "when contact acts in a step");
     option_add(o, &n, "touch", OPTION_FLAG, &c->touch,
                "contact where the points themselves touch, not where they share a node");
+    option_add_word(o, &n, "contact", &c->contact, IMPACT_CONTACTS,
+                    "where bodies meet: at shared nodes, or on their surfaces (axisymmetric, bond none)");
+    option_add(o, &n, "surface-damping", OPTION_REAL, &c->surface_damping, "damper of contact on surfaces, rho c");
+    option_add(o, &n, "springs", OPTION_FLAG, &c->springs, "springs beside the substrate's dampers: a half space");
     option_add_word(o, &n, "plasticity", &c->plasticity, MPM_NAMES(MPM_RETURN_LIST), "return mapping");
     option_add(o, &n, "gap", OPTION_REAL, &c->gap, "distance of the bodies at the start, um");
     option_add(o, &n, "margin", OPTION_REAL, &c->margin, "free grid around the bodies, particle diameters");

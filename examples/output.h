@@ -6,6 +6,7 @@
 #include "case.h"
 #include "mpm.h"
 #include "mpm_draw.h"
+#include "mpm_surface.h"
 #include "program.h"
 
 #include <time.h>
@@ -93,6 +94,7 @@ static inline int output_due(const output *o, const mpm_world *w, int64_t steps)
 typedef struct output_picture {
     mpm_draw_cut_desc cut[2];
     char title[160], time[32];
+    double (*outline)[4]; /* of output_outline; for free */
 } output_picture;
 
 /* Plastic strain, and a second value of the points (NULL: the bodies). Title, window and the range of the
@@ -102,6 +104,7 @@ static inline void output_cuts(const output *o, const mpm_world *w, double spaci
                                output_picture *p)
 {
     int i;
+    p->outline = NULL;
     snprintf(p->time, sizeof p->time, "t = %.1f %s", (double)w->time * 1e3, o->time);
     for (i = 0; i < 2; i++) {
         p->cut[i] = mpm_draw_cut_of(w, i ? second : w->points.plastic_strain);
@@ -134,6 +137,27 @@ static inline void output_heat(output_picture *p, double low, double high)
     p->cut[1].map = MPM_DRAW_HEAT;
     p->cut[1].low = low;
     p->cut[1].high = high;
+}
+
+/* Draws the surfaces of bodies over both cuts; p->outline is then to be freed. Returns 1, or 0 after a message. */
+static inline int output_outline(output_picture *p, const mpm_surfaces *s)
+{
+    int32_t a, i;
+    size_t n = 0;
+    int k;
+    for (a = 0; a < s->surfaces; a++) n += (size_t)s->surface[a].faces;
+    if (n == 0) return 1;
+    p->outline = (double(*)[4])malloc(n * sizeof *p->outline);
+    if (!p->outline) return complain("no memory for outlines");
+    for (a = 0, n = 0; a < s->surfaces; a++)
+        for (i = 0; i < s->surface[a].faces; i++, n++)
+            for (k = 0; k < 4; k++)
+                p->outline[n][k] = (double)s->surface[a].marker[s->surface[a].face[i][k / 2]].x[k % 2 ? 2 : 0];
+    for (k = 0; k < 2; k++) {
+        p->cut[k].line_count = n;
+        p->cut[k].lines = (const double(*)[4])p->outline;
+    }
+    return 1;
 }
 
 static inline int output_png(output *o, const output_picture *p, const char *name)
@@ -194,6 +218,88 @@ static inline int output_points(const output *o, const mpm_world *w, const mpm_i
     ok = mpm_io_vtu(file_in(o->folder, name, path, sizeof path), &d, &fault) >= 0;
     free(body);
     return ok || report(&fault, path);
+}
+
+#define OUTPUT_MARKER 8 /* values of a marker: place, velocity, pressure, gap */
+
+/* All markers' values, one array after the other, n long each; their bodies, and the faces between them. */
+static inline void output_markers(const mpm_world *w, const mpm_surfaces *s, int32_t n, mpm_real *value, int32_t *body,
+                                  int32_t (*line)[2])
+{
+    int32_t a, i, from = 0;
+    int k;
+    for (a = 0; a < s->surfaces; from += s->surface[a++].markers) {
+        const mpm_surface *c = &s->surface[a];
+        for (i = 0; i < c->faces; i++, line++)
+            for (k = 0; k < 2; k++) (*line)[k] = from + c->face[i][k];
+        for (i = 0; i < c->markers; i++) {
+            const mpm_marker *p = &c->marker[i];
+            mpm_real *to = value + from + i;
+            for (k = 0; k < 3; k++) {
+                to[(size_t)k * (size_t)n] = p->x[k];
+                to[(size_t)(3 + k) * (size_t)n] = p->v[k];
+            }
+            to[6 * (size_t)n] = p->meet[0].pressure;
+            to[7 * (size_t)n] = p->meet[0].other == MPM_SURFACE_NONE ? w->desc.cell : p->meet[0].gap;
+            body[from + i] = c->body;
+        }
+    }
+}
+
+/* Writes them as folder/name. */
+static inline int output_lines(const output *o, const mpm_world *w, int32_t n, const mpm_real *value,
+                               const int32_t *body, const int32_t (*line)[2], int32_t lines, const char *name)
+{
+    mpm_io_vtu_desc d = mpm_io_vtu_desc_default();
+    mpm_io_field field[4];
+    const mpm_real *at[OUTPUT_MARKER];
+    char path[PATH_BYTES], note[80];
+    mpm_fault fault;
+    int k;
+    for (k = 0; k < OUTPUT_MARKER; k++) at[k] = value + (size_t)k * (size_t)n;
+    field[0] = mpm_io_vector("velocity (m/s)", at[3], at[4], at[5], 1);
+    field[1] = mpm_io_scalar("contact pressure (MPa)", at[6], 1);
+    field[2] = mpm_io_scalar("gap (um)", at[7], 1);
+    field[3] = mpm_io_int32("body", body);
+    snprintf(note, sizeof note, "%s: lengths %s, time %s", o->name, o->length, o->time);
+    d.count = (size_t)n;
+    for (k = 0; k < 3; k++) d.x[k] = at[k];
+    d.fields = field;
+    d.field_count = 4;
+    d.lines = line;
+    d.line_count = (size_t)lines;
+    d.time = (double)w->time * 1e3;
+    d.float32 = 1;
+    d.note = note;
+    return mpm_io_vtu(file_in(o->folder, name, path, sizeof path), &d, &fault) >= 0 || report(&fault, path);
+}
+
+/* The surfaces of the frame to come, surface_NNNN.vtu, and its entry in a series of their own, surface.pvd. */
+static inline int output_surfaces(output *o, const mpm_world *w, const mpm_surfaces *s)
+{
+    const clock_t mark = clock();
+    mpm_real *value;
+    int32_t(*line)[2], *body, a, n = 0, lines = 0;
+    char name[64], path[PATH_BYTES];
+    mpm_fault fault;
+    int ok;
+    for (a = 0; a < s->surfaces; a++) n += s->surface[a].markers, lines += s->surface[a].faces;
+    if (n == 0) return 1;
+    value = (mpm_real *)malloc((size_t)n * OUTPUT_MARKER * sizeof *value);
+    body = (int32_t *)malloc((size_t)n * sizeof *body);
+    line = (int32_t(*)[2])malloc((size_t)lines * sizeof *line);
+    snprintf(name, sizeof name, "surface_%04lld.vtu", (long long)o->frame);
+    ok = (value && body && line) || complain("no memory for surfaces");
+    if (ok) output_markers(w, s, n, value, body, line);
+    ok = ok && output_lines(o, w, n, value, body, (const int32_t(*)[2])line, lines, name);
+    if (ok && mpm_io_pvd_add(file_in(o->folder, "surface.pvd", path, sizeof path), name, (double)w->time * 1e3,
+                             &fault) < 0)
+        ok = report(&fault, path);
+    free(value);
+    free(body);
+    free(line);
+    o->writing += clock() - mark;
+    return ok;
 }
 
 /* The next frame: points_NNNN.vtu, its entry in the series, and frame_NNNN.png. */

@@ -238,7 +238,7 @@ static int carry_out(int argc, char **argv)
     ok = ok && run(&s, &c, &o, &k, options, n);
     free(k.separation);
     free(k.stress);
-    mpm_free(&s.world);
+    impact_end(&s);
     return ok ? 0 : 1;
 }
 

@@ -175,7 +175,7 @@ static mpm_draw_cut_desc make_cut(void)
 
 static void test_cut(void)
 {
-    static const double window[4] = {-50, 50, -50, 50};
+    static const double window[4] = {-50, 50, -50, 50}, line[1][4] = {{10, -20, 90, -20}};
     mpm_draw_cut_desc d = make_cut(), panels[2];
     mpm_draw_canvas c;
     mpm_fault f;
@@ -201,6 +201,14 @@ static void test_cut(void)
          left < 216 && mpm_draw_pixel(&c, 215 - left, 100) == mpm_draw_pixel(&c, 216 + left, 100);)
         left++;
     CHECK_EQUAL("pixels that mirror each other, up to the frame", left, 199);
+    d.lines = line;
+    d.line_count = 1;
+    mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f);
+    CHECK_TRUE("a line over the points", mpm_draw_pixel(&c, 216 + 80, 216 + 80) < 0x404040 &&
+                                             mpm_draw_pixel(&c, 216 + 80, 216 + 60) == low);
+    CHECK_TRUE("... and its mirror image", mpm_draw_pixel(&c, 216 - 80, 216 + 80) < 0x404040);
+    CHECK_EQUAL("... not beyond the frame", mpm_draw_pixel(&c, 425, 216 + 80), 0xffffff);
+    d.line_count = 0;
     d.at = 5;
     mpm_draw_fill(&c, 0xffffff);
     mpm_draw_cut(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &f);

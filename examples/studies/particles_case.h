@@ -151,7 +151,7 @@ static inline int particles_begin(impact *s, const particles_case *q, char *mess
     s->bond.partner = mpm_field_take(&s->world, "bonded to");
     if (s->bond.partner >= 0) return 1;
     snprintf(message, n, "no memory to note whom the points bond to");
-    mpm_free(&s->world);
+    impact_end(s);
     return 0;
 }
 
@@ -601,7 +601,7 @@ static inline int particles_main(particles_case *q, const option *o, int n)
         remove(file_in(q->out.folder, "checkpoint.bin", path, sizeof path));
         if (!q->out.quiet) particles_print(q, r, &s);
     }
-    mpm_free(&s.world);
+    impact_end(&s);
     return status > 0 ? 0 : status < 0 ? 3 : 1;
 }
 

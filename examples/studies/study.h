@@ -353,7 +353,7 @@ static inline int study_run(study *s, const impact_case *c, double *value, char 
     if (status < 0) mpm_io_fault_text(message, n, &run.world.fault);
     else study_measure(&run, c, &watch, value);
     value[STUDY_CPU] = study_seconds(begun);
-    mpm_free(&run.world);
+    impact_end(&run);
     return status >= 0;
 }
 

@@ -50,7 +50,7 @@ static int touch_after(work *w, impact_case c, double ns, touch *t)
     while (status >= 0 && run.world.steps < run.steps) status = impact_step(&run);
     if (status < 0) mpm_io_fault_text(w->message, sizeof w->message, &run.world.fault);
     else *t = touch_measure(&run.world, c.spacing);
-    mpm_free(&run.world);
+    impact_end(&run);
     return status >= 0;
 }
 

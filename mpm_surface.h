@@ -53,6 +53,14 @@
      the step        mpm_surface_step = the phases of mpm.h with mpm_surface_contact and mpm_surface_move
      looking at it   mpm_surface_meets: who touches whom, and how hard
 
+   ADHESION (on request: surfaces.adhesion > 0)
+     Plastic work in a layer of a physical depth l under both surfaces, from the first touch on, is the interface's
+     dissipation G of each marker's meeting:
+       dG = l (d<w_p> of this body + d<w_p> of the other),  <w_p>: mean over the points of depth < l that were within l
+       along the surface at first, weight (1 - q)^2 (1 + 2 q)                                                    (S4)
+     Where it exceeds G_c it leaves an adhesion of W = W0 (G/G_c - 1) per area: a traction 2 W/delta_c at most, spent
+     when drawn open by delta_c (S5). It belongs to the two bodies that met, and costs what it takes: ledger.hold.
+
    WHAT IT DOES NOT DO: surfaces of three-dimensional bodies; contact of a body with itself; more than two other bodies
    at a marker.
 
@@ -94,7 +102,12 @@ typedef struct mpm_meet {
     mpm_real gap, rate;   /* from the other's surface, along its normal, > 0: apart [length]; its rate */
     mpm_real normal[3];   /* unit, out of the other */
     mpm_real pressure;    /* >= 0 */
-    mpm_real slip[3];     /* of the stick spring: how far the marker has slid while touching [length] */
+    mpm_real slip[3];     /* what the spring of friction holds of the way that the marker has slid [length] */
+    mpm_real drawn[3];    /* how far the marker has slid since it was pressed last, against adhesion [length] */
+    int touched;          /* 1: it was pressed once (with adhesion) */
+    mpm_real dissipated;  /* G: plastic work in the layer on both sides since then, over its area [energy/area] */
+    mpm_real opened;      /* how far its adhesion was drawn open since it was pressed last, at most [length] */
+    mpm_real tension[3];  /* traction of adhesion on the marker now [stress] */
 } mpm_meet;
 
 #define MPM_SURFACE_NONE (-1000)
@@ -104,10 +117,26 @@ typedef struct mpm_marker {
     mpm_real x[3], v[3];  /* position, and velocity of its own body's grid there */
     mpm_real normal[3];   /* unit, out of the body */
     mpm_real area;        /* what of the surface it stands for, now [length^2; per depth in plane strain] */
-    mpm_real force[3];    /* from all other bodies in this step */
+    mpm_real along;       /* its place on the surface as it was at first: length of the way to it */
+    mpm_real force[3];    /* contact with all other bodies in this step */
+    mpm_real pull[3];     /* adhesion to them */
     mpm_real wall[3];     /* from walls */
     mpm_meet meet[MPM_SURFACE_MEETS];
 } mpm_marker;
+
+/* The layer under a surface whose plastic work makes adhesion: at stations, the first places of the markers, means over
+   the points near them, in the body as it was at first. */
+typedef struct mpm_layer {
+    int32_t stations, points; /* 0: none */
+    int32_t first_id;         /* of the body's points */
+    mpm_real round;           /* length of a closed surface; 0: an open one */
+    mpm_real *along;          /* per station: length of the way to it, rising */
+    mpm_real *mean, *change;  /* plastic work per volume, and what it has grown by in this step [stress] */
+    int32_t *begin;           /* per station, and one more: its entries */
+    int32_t *point;           /* per entry: number of the point, less first_id */
+    mpm_real *weight;         /* of it; they sum to 1 */
+    int32_t *where;           /* per point: its index now, -1: retired */
+} mpm_layer;
 
 /* The surface of one body: markers joined by faces. The body lies to the left of a face's way from its first to its
    second marker, with x to the right and z up. */
@@ -118,6 +147,7 @@ typedef struct mpm_surface {
     mpm_marker *marker;
     int32_t (*face)[2];
     int32_t (*around)[2]; /* per marker: the faces that it ends and begins, -1: none */
+    mpm_layer layer;
 } mpm_surface;
 
 /* A rigid half space. */
@@ -134,6 +164,10 @@ typedef struct mpm_surfaces {
     mpm_real friction;    /* Coulomb coefficient, >= 0 */
     mpm_real softening;   /* eps of (S1): weight of nodes whose mass is small beside rho cell^3, > 0 */
     mpm_real longest;     /* faces longer than this many cells are halved, > 0 */
+    mpm_real adhesion;    /* W0 [energy/area]: W = W0 (G/G_c - 1) where G exceeds G_c; 0: none */
+    mpm_real critical;    /* G_c [energy/area], > 0 with adhesion */
+    mpm_real depth;       /* l: thickness of the layer on each side, and reach of its means along it [length] */
+    mpm_real reach;       /* delta_c: how far adhesion is drawn open before it is spent [length] */
     int both;             /* 1: the markers of both bodies meet the other, with half the weight; 0: of the first */
     int renew;            /* steps from one full search to the next; in between neighbours are tried, >= 1 */
     mpm_surface *surface;
@@ -170,8 +204,8 @@ MPM_API mpm_status mpm_surface_add_chain(mpm_surfaces *s, const mpm_world *w, in
    length; MPM_ERR_FULL: there are MPM_SURFACE_WALLS. Test: 33_surface. */
 MPM_API mpm_status mpm_surface_wall_add(mpm_surfaces *s, const mpm_real point[3], const mpm_real normal[3]);
 
-/* Finds who meets whom and puts the forces on the nodes. Between mpm_forces and mpm_grid_update.
-   MPM_ERR_MEMORY. Test: 33_surface. */
+/* Finds who meets whom and puts the forces on the nodes; world.held counts the markers' meetings that adhesion draws
+   together. Between mpm_forces and mpm_grid_update. MPM_ERR_MEMORY. Test: 33_surface. */
 MPM_API mpm_status mpm_surface_contact(mpm_surfaces *s, mpm_world *w);
 
 /* Moves the markers as their bodies' matter moves, with MUSL's velocity (with that of P(k+1) the penalty would take
@@ -187,9 +221,14 @@ MPM_API mpm_status mpm_surface_step(mpm_surfaces *s, mpm_world *w, mpm_real dt);
 /* How surface a meets surface b (-1: any other body), in the last step. */
 typedef struct mpm_meeting {
     double area;         /* under pressure [length^2] */
-    double force[3];     /* on a */
+    double force[3];     /* on a: pressure alone */
+    double pull[3];      /* on a: adhesion */
     double pressure_max;
     double gap_min;      /* deepest (negative: penetration) or nearest; the cell if they are further apart */
+    double touched;      /* with adhesion: area that was ever pressed, its mean G [energy/area], */
+    double dissipated;
+    double bonded;       /* ... the part of it with adhesion that is not spent; what it takes to part that [energy] */
+    double adhesion;
 } mpm_meeting;
 
 /* Between steps, the force from a's own markers and b's together. Test: 33_surface. */
@@ -208,6 +247,8 @@ MPM_API mpm_meeting mpm_surface_meets(const mpm_surfaces *s, const mpm_world *w,
 
 #include <string.h>
 
+#define MPM__LAYER_STEPS 4 /* from one look at the layers to the next */
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -223,6 +264,7 @@ MPM_API mpm_surfaces mpm_surfaces_default(void)
     s.damping = 1;
     s.softening = MPM_R(0.002);
     s.longest = MPM_R(0.5);
+    s.critical = s.depth = s.reach = 0;
     s.both = 1;
     s.renew = 20;
     return s;
@@ -236,6 +278,10 @@ MPM_API mpm_status mpm_surfaces_check(const mpm_surfaces *s, mpm_fault *f)
     if (st == MPM_OK) st = mpm_want(s->friction >= 0, f, "friction", s->friction, -1);
     if (st == MPM_OK) st = mpm_want(s->softening > 0, f, "softening", s->softening, -1);
     if (st == MPM_OK) st = mpm_want(s->longest > 0, f, "longest", s->longest, -1);
+    if (st == MPM_OK) st = mpm_want(s->adhesion >= 0, f, "adhesion", s->adhesion, -1);
+    if (st == MPM_OK && s->adhesion > 0) st = mpm_want(s->critical > 0, f, "critical", s->critical, -1);
+    if (st == MPM_OK && s->adhesion > 0) st = mpm_want(s->depth > 0, f, "depth", s->depth, -1);
+    if (st == MPM_OK && s->adhesion > 0) st = mpm_want(s->reach > 0, f, "reach", s->reach, -1);
     return st != MPM_OK ? st : mpm_want(s->renew >= 1, f, "renew", (mpm_real)s->renew, -1);
 }
 
@@ -244,14 +290,23 @@ static inline void mpm__surface_release(void *p)
     if (p) MPM_FREE(p);
 }
 
+/* Gives back what a surface holds. */
+static inline mpm_status mpm__surface_drop(mpm_surface *c, mpm_status st)
+{
+    mpm__surface_release(c->marker);
+    mpm__surface_release(c->face);
+    mpm__surface_release(c->around);
+    mpm__surface_release(c->layer.along);
+    mpm__surface_release(c->layer.begin);
+    mpm__surface_release(c->layer.point);
+    mpm__surface_release(c->layer.weight);
+    return st;
+}
+
 MPM_API void mpm_surfaces_free(mpm_surfaces *s)
 {
     int32_t i;
-    for (i = 0; i < s->surfaces; i++) {
-        mpm__surface_release(s->surface[i].marker);
-        mpm__surface_release(s->surface[i].face);
-        mpm__surface_release(s->surface[i].around);
-    }
+    for (i = 0; i < s->surfaces; i++) mpm__surface_drop(&s->surface[i], MPM_OK);
     mpm__surface_release(s->surface);
     mpm__surface_release(s->bucket);
     mpm__surface_release(s->next);
@@ -397,15 +452,6 @@ static inline mpm_surface *mpm__surface_new(mpm_surfaces *s, const mpm_world *w,
     return &s->surface[s->surfaces];
 }
 
-/* Forgets a surface that could not be made. */
-static inline mpm_status mpm__surface_drop(mpm_surface *c, mpm_status st)
-{
-    mpm__surface_release(c->marker);
-    mpm__surface_release(c->face);
-    mpm__surface_release(c->around);
-    return st;
-}
-
 /* Takes off what lies behind side d of the grid: faces on the plane or beyond; one that crosses it ends there. */
 static inline void mpm__surface_cut(const mpm_world *w, mpm_surface *c, int d)
 {
@@ -444,6 +490,227 @@ static inline void mpm__surface_pack(mpm_surface *c)
     mpm__surface_join(c);
 }
 
+/* The place on a face nearest to x: u, and the distance squared. */
+static inline mpm_real mpm__surface_nearest(const mpm_surface *c, int32_t face, const mpm_real *x, mpm_real *u)
+{
+    const mpm_real *a = c->marker[c->face[face][0]].x, *b = c->marker[c->face[face][1]].x;
+    const mpm_real tx = b[0] - a[0], tz = b[2] - a[2], square = tx * tx + tz * tz;
+    mpm_real at = square > 0 ? ((x[0] - a[0]) * tx + (x[2] - a[2]) * tz) / square : 0, dx, dz;
+    at = at < 0 ? 0 : at > 1 ? 1 : at;
+    dx = a[0] + at * tx - x[0];
+    dz = a[2] + at * tz - x[2];
+    *u = at;
+    return dx * dx + dz * dz;
+}
+
+/* ---- the layer under a surface ------------------------------------------------------------------- */
+
+/* Numbers the way along the surface: from its first open end, or from the first marker of a closed one. */
+static inline void mpm__layer_way(mpm_surface *c)
+{
+    mpm_real way = 0;
+    int32_t i, from;
+    for (i = 0; i < c->markers; i++) c->marker[i].along = -1;
+    for (i = 0; i < 2 * c->markers; i++) { /* open ends first, then what is left: closed parts */
+        from = i % c->markers;
+        if (c->marker[from].along >= 0 || (i < c->markers && c->around[from][0] >= 0)) continue;
+        while (c->marker[from].along < 0) {
+            const int32_t face = c->around[from][1], to = face < 0 ? from : c->face[face][1];
+            const mpm_real *a = c->marker[from].x, *b = c->marker[to].x;
+            c->marker[from].along = way;
+            way += mpm_sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[2] - a[2]) * (b[2] - a[2]));
+            from = to;
+        }
+        c->layer.round = c->around[from][0] >= 0 ? way : 0; /* a closed surface is one part */
+        way += 1;
+    }
+}
+
+/* Distance along the surface. */
+static inline mpm_real mpm__layer_apart(const mpm_layer *y, mpm_real a, mpm_real b)
+{
+    const mpm_real d = a > b ? a - b : b - a;
+    return d > y->round / 2 && y->round > 0 ? (d < y->round ? y->round - d : 0) : d;
+}
+
+/* The place between two neighbours; at the seam of a closed surface the nearer of them. */
+static inline mpm_real mpm__layer_between(const mpm_layer *y, mpm_real a, mpm_real b, mpm_real u)
+{
+    const mpm_real d = a > b ? a - b : b - a;
+    if (y->round > 0 && d > y->round / 2) return u < MPM_R(0.5) ? a : b;
+    return (1 - u) * a + u * b;
+}
+
+/* Where the point at x has its foot on the surface, and how deep it lies below. */
+static inline mpm_real mpm__layer_foot(const mpm_surface *c, const mpm_real *x, mpm_real *along)
+{
+    mpm_real nearest = 0, u = 0, square;
+    int32_t i, best = -1;
+    for (i = 0; i < c->faces; i++) {
+        square = mpm__surface_nearest(c, i, x, &u);
+        if (best >= 0 && !(square < nearest)) continue;
+        nearest = square;
+        best = i;
+        *along = c->marker[c->face[i][u < MPM_R(0.5) ? 0 : 1]].along; /* good to half a face */
+    }
+    return mpm_sqrt(nearest);
+}
+
+/* Weight of a point at q reaches from a station: (1 - q)^2 (1 + 2 q). */
+static inline mpm_real mpm__layer_weight(mpm_real q) { return q < 1 ? (1 - q) * (1 - q) * (1 + 2 * q) : 0; }
+
+/* Memory of a layer with its stations and `entries` of points. */
+static inline mpm_status mpm__layer_room(mpm_layer *y, int32_t entries, mpm_fault *f)
+{
+    const size_t n = (size_t)y->stations;
+    y->along = (mpm_real *)MPM_MALLOC(3 * n * sizeof *y->along);
+    y->begin = (int32_t *)MPM_MALLOC((n + 1) * sizeof *y->begin);
+    y->point = (int32_t *)MPM_MALLOC(((size_t)entries + (size_t)y->points) * sizeof *y->point);
+    y->weight = (mpm_real *)MPM_MALLOC((size_t)entries * sizeof *y->weight);
+    if (!y->along || !y->begin || !y->point || !y->weight) return mpm__surface_full(f, entries);
+    y->mean = y->along + n;
+    y->change = y->mean + n;
+    y->where = y->point + entries;
+    return MPM_OK;
+}
+
+/* Sorts the stations' ways: they come in order but for where parts of the surface begin. */
+static inline void mpm__layer_sort(mpm_layer *y)
+{
+    int32_t i, k;
+    for (i = 1; i < y->stations; i++) {
+        const mpm_real a = y->along[i];
+        for (k = i; k > 0 && y->along[k - 1] > a; k--) y->along[k] = y->along[k - 1];
+        y->along[k] = a;
+    }
+}
+
+/* Visits the points of a body that lie within the layer: counts their entries at all stations, or writes them. */
+static inline int32_t mpm__layer_visit(const mpm_surfaces *s, const mpm_world *w, mpm_surface *c, const mpm_real *foot,
+                                       int write)
+{
+    const mpm_body *b = &w->body[c->body];
+    mpm_layer *y = &c->layer;
+    int32_t k, i, n = 0;
+    for (k = 0; k < y->stations; k++) {
+        mpm_real sum = 0;
+        const int32_t from = n;
+        for (i = 0; i < b->count; i++) {
+            mpm_real part = 0;
+            if (foot[i] >= 0) part = mpm__layer_weight(mpm__layer_apart(y, foot[i], y->along[k]) / s->depth);
+            if (!(part > 0)) continue;
+            if (write) {
+                y->point[n] = w->points.id[b->first + i] - y->first_id;
+                y->weight[n] = w->points.mass[b->first + i] * part;
+                sum += y->weight[n];
+            }
+            n++;
+        }
+        if (!write) continue;
+        y->begin[k] = from;
+        for (i = from; i < n; i++) y->weight[i] /= sum;
+    }
+    if (write) y->begin[y->stations] = n;
+    return n;
+}
+
+/* The layer of a new surface, from the points as they lie. */
+static inline mpm_status mpm__layer_make(mpm_surfaces *s, const mpm_world *w, mpm_surface *c)
+{
+    const mpm_body *b = &w->body[c->body];
+    mpm_layer *y = &c->layer;
+    mpm_real *foot = (mpm_real *)MPM_MALLOC(((size_t)b->count + (size_t)c->markers) * sizeof *foot);
+    mpm_status st;
+    int32_t i;
+    int d;
+    if (!foot) return mpm__surface_full(&s->fault, b->count);
+    mpm__layer_way(c);
+    y->stations = c->markers;
+    y->points = b->count;
+    y->first_id = b->count > 0 ? w->points.id[b->first] : 0;
+    for (i = 0; i < b->count; i++) {
+        mpm_real x[3];
+        if (w->points.id[b->first + i] < y->first_id) y->first_id = w->points.id[b->first + i];
+        for (d = 0; d < 3; d++) x[d] = w->points.x[d][b->first + i];
+        if (!(mpm__layer_foot(c, x, &foot[i]) < s->depth)) foot[i] = -1;
+    }
+    y->along = foot + b->count;
+    for (i = 0; i < c->markers; i++) y->along[i] = c->marker[i].along;
+    mpm__layer_sort(y);
+    i = mpm__layer_visit(s, w, c, foot, 0);
+    y->along = NULL;
+    st = mpm__layer_room(y, i, &s->fault);
+    if (st == MPM_OK) {
+        for (i = 0; i < c->markers; i++) {
+            y->along[i] = c->marker[i].along;
+            y->mean[i] = y->change[i] = 0;
+        }
+        mpm__layer_sort(y);
+        mpm__layer_visit(s, w, c, foot, 1);
+    }
+    MPM_FREE(foot);
+    return st;
+}
+
+/* The means of a layer now, and what they have grown by since they were taken last. */
+static inline void mpm__layer_update(const mpm_world *w, mpm_surface *c)
+{
+    const mpm_body *b = &w->body[c->body];
+    mpm_layer *y = &c->layer;
+    int32_t i, k;
+    for (i = 0; i < y->points; i++) y->where[i] = -1;
+    for (i = b->first; i < b->first + b->active; i++) {
+        const int32_t number = w->points.id[i] - y->first_id;
+        if (number >= 0 && number < y->points) y->where[number] = i;
+    }
+    for (k = 0; k < y->stations; k++) {
+        mpm_real sum = 0;
+        for (i = y->begin[k]; i < y->begin[k + 1]; i++)
+            if (y->where[y->point[i]] >= 0) sum += y->weight[i] * w->points.plastic_work[y->where[y->point[i]]];
+        y->change[k] = sum - y->mean[k];
+        y->mean[k] = sum;
+    }
+}
+
+/* What the layer has grown by at a place along it: linear between stations. */
+static inline mpm_real mpm__layer_change(const mpm_layer *y, mpm_real along)
+{
+    int32_t low = 0, high = y->stations - 1;
+    mpm_real u;
+    while (high - low > 1) {
+        const int32_t middle = (low + high) / 2;
+        if (y->along[middle] > along) high = middle;
+        else low = middle;
+    }
+    u = y->along[high] > y->along[low] ? (along - y->along[low]) / (y->along[high] - y->along[low]) : 0;
+    u = u < 0 ? 0 : u > 1 ? 1 : u;
+    return (1 - u) * y->change[low] + u * y->change[high];
+}
+
+/* G of all meetings that have touched: dG = l (d<w_p> of this body + d<w_p> of the other where it is met). */
+static inline void mpm__layer_grow(mpm_surfaces *s)
+{
+    int32_t a, i;
+    int k;
+    for (a = 0; a < s->surfaces; a++)
+        for (i = 0; i < s->surface[a].markers; i++)
+            for (k = 0; k < MPM_SURFACE_MEETS; k++) {
+                mpm_marker *m = &s->surface[a].marker[i];
+                mpm_meet *meet = &m->meet[k];
+                const mpm_surface *c;
+                mpm_real from, to;
+                if (meet->other < 0 || !meet->touched) continue;
+                c = &s->surface[meet->other];
+                from = c->marker[c->face[meet->face][0]].along;
+                to = c->marker[c->face[meet->face][1]].along;
+                to = mpm__layer_between(&c->layer, from, to, meet->u);
+                meet->dissipated += s->depth * (mpm__layer_change(&s->surface[a].layer, m->along) +
+                                                mpm__layer_change(&c->layer, to));
+            }
+}
+
+/* ---- making a surface whole ------------------------------------------------------------------------ */
+
 /* Cuts a new surface at the mirrors, gives its markers the body's velocity and counts it in. */
 static inline mpm_status mpm__surface_finish(mpm_surfaces *s, const mpm_world *w)
 {
@@ -459,6 +726,7 @@ static inline mpm_status mpm__surface_finish(mpm_surfaces *s, const mpm_world *w
     for (i = 0; i < c->markers; i++)
         for (d = 0; d < 3; d++) c->marker[i].v[d] = w->body[c->body].desc.velocity[d];
     mpm__surface_measure(w, c);
+    if (s->adhesion > 0 && (st = mpm__layer_make(s, w, c)) != MPM_OK) return mpm__surface_drop(c, st);
     s->surfaces++;
     return MPM_OK;
 }
@@ -552,19 +820,6 @@ MPM_API mpm_status mpm_surface_wall_add(mpm_surfaces *s, const mpm_real point[3]
 
 /* ---- who meets whom ------------------------------------------------------------------------------ */
 
-/* The place on a face nearest to x: u, and the distance squared. */
-static inline mpm_real mpm__surface_nearest(const mpm_surface *c, int32_t face, const mpm_real *x, mpm_real *u)
-{
-    const mpm_real *a = c->marker[c->face[face][0]].x, *b = c->marker[c->face[face][1]].x;
-    const mpm_real tx = b[0] - a[0], tz = b[2] - a[2], square = tx * tx + tz * tz;
-    mpm_real at = square > 0 ? ((x[0] - a[0]) * tx + (x[2] - a[2]) * tz) / square : 0, dx, dz;
-    at = at < 0 ? 0 : at > 1 ? 1 : at;
-    dx = a[0] + at * tx - x[0];
-    dz = a[2] + at * tz - x[2];
-    *u = at;
-    return dx * dx + dz * dz;
-}
-
 /* Whether a marker can touch a face: it looks towards the marker, and the marker at it. */
 static inline int mpm__surface_faces(const mpm_surface *c, int32_t face, const mpm_marker *m)
 {
@@ -654,7 +909,7 @@ static inline void mpm__surface_search(mpm_surfaces *s, const mpm_world *w, int3
                 for (face = s->bucket[mpm__surface_bucket(s, ix, iz)]; face >= 0; face = s->next[face])
                     mpm__surface_try(other, face, m, &found, &nearest);
         meet = mpm__surface_meet(m, b, found.face >= 0);
-        if (!meet) continue;
+        if (!meet || (found.face < 0 && meet->touched)) continue; /* what once touched is kept: its G is asked for */
         if (found.face < 0) meet->other = MPM_SURFACE_NONE;
         meet->face = found.face;
         meet->u = found.u;
@@ -817,28 +1072,71 @@ static inline void mpm__surface_friction(const mpm_surfaces *s, const mpm_marker
     }
 }
 
+/* Adhesion, of W = W0 (G/G_c - 1): pressed, the marker follows the other. Drawn open by o, normal and along the
+   surface, a traction k o against it up to 2 W/delta_c, then falling to none at delta_c, and back to the origin when o
+   falls: it never gives energy. Pressed again, it is whole again. */
+static inline void mpm__surface_adhere(const mpm_surfaces *s, const mpm_marker *m, mpm_meet *meet, mpm_real k,
+                                       mpm_real dt, mpm_real *t)
+{
+    const mpm_real energy = s->adhesion * (meet->dissipated / s->critical - 1), most = 2 * energy / s->reach;
+    mpm_real v[3], open[3], along = 0, length = 0, bears;
+    int d;
+    t[0] = t[1] = t[2] = 0;
+    if (meet->pressure > 0) {
+        meet->touched = 1;
+        meet->drawn[0] = meet->drawn[1] = meet->drawn[2] = meet->opened = 0;
+        return;
+    }
+    if (!meet->touched) return;
+    mpm__surface_velocity(s, meet, v);
+    for (d = 0; d < 3; d++) {
+        meet->drawn[d] += dt * (m->v[d] - v[d]);
+        along += meet->drawn[d] * meet->normal[d];
+    }
+    for (d = 0; d < 3; d++) {
+        meet->drawn[d] -= along * meet->normal[d];
+        open[d] = meet->drawn[d] + (meet->gap > 0 ? meet->gap : 0) * meet->normal[d];
+        length += open[d] * open[d];
+    }
+    length = mpm_sqrt(length);
+    if (!(energy > 0) || !(length > 0)) return;
+    if (length > meet->opened) meet->opened = length;
+    if (meet->opened >= s->reach) return; /* spent */
+    bears = k * meet->opened;
+    if (bears > most) bears = most * (1 - meet->opened / s->reach) / (1 - most / k / s->reach);
+    if (bears < 0) bears = 0;
+    if (bears > most) bears = most;
+    for (d = 0; d < 3; d++) t[d] = -bears * open[d] / meet->opened;
+}
+
 /* Adds what a marker gets from a meeting to it, and what it gives to the other's markers. */
 static inline void mpm__surface_give(mpm_surfaces *s, mpm_marker *m, mpm_meet *meet, mpm_real k, mpm_real dt,
                                      mpm_real share)
 {
     mpm_surface *c = meet->other < 0 ? NULL : &s->surface[meet->other];
+    mpm_marker *a = c ? &c->marker[c->face[meet->face][0]] : NULL, *b = c ? &c->marker[c->face[meet->face][1]] : NULL;
     mpm_real t[3] = {0, 0, 0};
     int d;
     if (s->friction > 0) mpm__surface_friction(s, m, meet, k, dt, t);
+    if (s->adhesion > 0 && c) mpm__surface_adhere(s, m, meet, k, dt, meet->tension);
     for (d = 0; d < 3; d++) {
         const mpm_real f = share * m->area * (meet->pressure * meet->normal[d] + t[d]);
+        const mpm_real pull = share * m->area * meet->tension[d];
         if (!c) {
             m->wall[d] += f;
             continue;
         }
         m->force[d] += f;
-        c->marker[c->face[meet->face][0]].force[d] -= (1 - meet->u) * f;
-        c->marker[c->face[meet->face][1]].force[d] -= meet->u * f;
+        a->force[d] -= (1 - meet->u) * f;
+        b->force[d] -= meet->u * f;
+        m->pull[d] += pull;
+        a->pull[d] -= (1 - meet->u) * pull;
+        b->pull[d] -= meet->u * pull;
     }
 }
 
 /* Pressures p = max(0, -k g - c g') (S3) and forces of surface a against `other`. */
-static inline void mpm__surface_press(mpm_surfaces *s, const mpm_world *w, int32_t a, int32_t other)
+static inline void mpm__surface_press(mpm_surfaces *s, mpm_world *w, int32_t a, int32_t other)
 {
     mpm_surface *own = &s->surface[a];
     const mpm_real share = other >= 0 && s->both ? MPM_R(0.5) : 1;
@@ -852,6 +1150,7 @@ static inline void mpm__surface_press(mpm_surfaces *s, const mpm_world *w, int32
         p = -k * meet->gap - c * meet->rate;
         meet->pressure = p > 0 ? p : 0;
         mpm__surface_give(s, &own->marker[i], meet, k, w->dt, share);
+        w->held += meet->tension[0] * meet->tension[0] + meet->tension[2] * meet->tension[2] > 0;
     }
 }
 
@@ -862,9 +1161,13 @@ MPM_API mpm_status mpm_surface_contact(mpm_surfaces *s, mpm_world *w)
     mpm_support at;
     mpm_status st = mpm__surface_find(s, w);
     if (st != MPM_OK) return st;
+    w->held = 0;
     for (a = 0; a < s->surfaces; a++)
         for (i = 0; i < s->surface[a].markers; i++)
-            for (d = 0; d < 3; d++) s->surface[a].marker[i].force[d] = s->surface[a].marker[i].wall[d] = 0;
+            for (d = 0; d < 3; d++) {
+                mpm_marker *m = &s->surface[a].marker[i];
+                m->force[d] = m->pull[d] = m->wall[d] = 0;
+            }
     for (a = 0; a < s->surfaces; a++)
         for (b = -(int32_t)s->walls; b < s->surfaces; b++)
             if (b < 0 || (a != b && (s->both || a < b))) mpm__surface_press(s, w, a, b);
@@ -872,7 +1175,7 @@ MPM_API mpm_status mpm_surface_contact(mpm_surfaces *s, mpm_world *w)
         for (i = 0; i < s->surface[a].markers; i++) {
             const mpm_marker *m = &s->surface[a].marker[i];
             mpm_real f[3];
-            for (d = 0; d < 3; d++) f[d] = m->force[d] + m->wall[d];
+            for (d = 0; d < 3; d++) f[d] = m->force[d] + m->pull[d] + m->wall[d];
             if (!(f[0] * f[0] + f[2] * f[2] > 0)) continue;
             if (mpm__surface_support(s, w, s->surface[a].body, m->x, &at)) mpm_push(w, &at, f);
         }
@@ -895,8 +1198,9 @@ static inline mpm_status mpm__surface_halve(mpm_surfaces *s, mpm_surface *c, int
     for (d = 0; d < 3; d++) {
         m->x[d] = (m->x[d] + c->marker[b].x[d]) / 2;
         m->v[d] = (m->v[d] + c->marker[b].v[d]) / 2;
-        m->force[d] = m->wall[d] = 0;
+        m->force[d] = m->pull[d] = m->wall[d] = 0;
     }
+    m->along = mpm__layer_between(&c->layer, m->along, c->marker[b].along, MPM_R(0.5));
     c->face[c->faces][0] = n;
     c->face[c->faces][1] = b;
     c->face[face][1] = n;
@@ -934,14 +1238,20 @@ MPM_API mpm_status mpm_surface_move(mpm_surfaces *s, mpm_world *w)
             mpm_marker *m = &c->marker[i];
             if (mpm__surface_support(s, w, c->body, m->x, &at)) {
                 const double work = mpm_support_work(w, &at, m->force);
-                w->ledger.walls += work; /* where mpm_push has booked it */
+                const double pulled = s->adhesion > 0 ? mpm_support_work(w, &at, m->pull) : 0;
+                w->ledger.walls += work + pulled; /* where mpm_push has booked it */
                 w->ledger.contact -= work;
+                w->ledger.hold -= pulled;
                 mpm_support_mapped(w, &at, m->v);
             }
             for (d = 0; d < 3; d++) m->x[d] += w->dt * m->v[d];
         }
         st = mpm__surface_refine(s, w, c);
         mpm__surface_measure(w, c);
+    }
+    if (s->adhesion > 0 && s->steps % MPM__LAYER_STEPS == 0) {
+        for (a = 0; a < s->surfaces; a++) mpm__layer_update(w, &s->surface[a]);
+        mpm__layer_grow(s);
     }
     s->steps++;
     return st;
@@ -971,6 +1281,18 @@ MPM_API mpm_status mpm_surface_step(mpm_surfaces *s, mpm_world *w, mpm_real dt)
 
 /* ---- looking at it ------------------------------------------------------------------------------- */
 
+/* Adds what adhesion has made of a meeting. */
+static inline void mpm__surface_collect_adhesion(const mpm_surfaces *s, const mpm_meet *meet, double area,
+                                                 mpm_meeting *r)
+{
+    if (!meet->touched) return;
+    r->touched += area;
+    r->dissipated += area * (double)meet->dissipated;
+    if (!(meet->dissipated > s->critical) || meet->opened >= s->reach) return;
+    r->bonded += area;
+    r->adhesion += area * (double)(s->adhesion * (meet->dissipated / s->critical - 1));
+}
+
 /* Adds the meetings of a's markers with b (-1: any body), force on a. */
 static inline void mpm__surface_collect(const mpm_surfaces *s, int32_t a, int32_t b, double share, double sign,
                                         mpm_meeting *r)
@@ -984,6 +1306,8 @@ static inline void mpm__surface_collect(const mpm_surfaces *s, int32_t a, int32_
             const double area = share * (double)m->area;
             if (meet->other < 0 || (b >= 0 && meet->other != b)) continue;
             if ((double)meet->gap < r->gap_min) r->gap_min = (double)meet->gap;
+            mpm__surface_collect_adhesion(s, meet, area, r);
+            for (d = 0; d < 3; d++) r->pull[d] += sign * area * (double)meet->tension[d];
             if (!(meet->pressure > 0)) continue;
             if ((double)meet->pressure > r->pressure_max) r->pressure_max = (double)meet->pressure;
             r->area += area;
@@ -1001,6 +1325,7 @@ MPM_API mpm_meeting mpm_surface_meets(const mpm_surfaces *s, const mpm_world *w,
     mpm__surface_collect(s, a, b, share, 1, &r);
     for (i = 0; i < s->surfaces; i++)
         if (i != a && (b < 0 || i == b)) mpm__surface_collect(s, i, a, share, -1, &r);
+    if (r.touched > 0) r.dissipated /= r.touched;
     return r;
 }
 

@@ -80,6 +80,8 @@ static int write_summary(const impact *s, const impact_result *r, const output *
     mpm_io_json_number(&j, "crater_depth_um", r->crater);
     mpm_io_json_number(&j, "contact_area_um2", r->contact_area);
     mpm_io_json_number(&j, "bonded_area_um2", r->bonded_area);
+    mpm_io_json_number(&j, "interface_dissipation_J_m2", r->meeting.dissipated);
+    mpm_io_json_number(&j, "interface_adhesion_pJ", r->meeting.adhesion);
     mpm_io_json_number(&j, "ejected_mass_fraction", r->ejected_fraction);
     mpm_io_json_number(&j, "eps_mean", r->particle.plastic_strain_mean);
     mpm_io_json_number(&j, "plastic_energy_density_mean_MPa", r->particle.plastic_work_mean);
@@ -118,7 +120,7 @@ static void print_table(const impact *s, const impact_case *c, const impact_resu
 {
     const mpm_world *w = &s->world;
     const double start = s->start.kinetic;
-    const int stays = fabs(r->relative) <= 5 && w->held > 0;
+    const int stays = fabs(r->relative) <= 5 && (w->held > 0 || r->meeting.bonded > 0);
     char name[64];
     printf("\n  %s, %g um at %g m/s after %.4g ns: %s\n\n", metals(s, name, sizeof name), c->diameter, c->velocity,
            (double)w->time * 1e3, stays ? "stays" : "rebounds");
@@ -137,6 +139,9 @@ static void print_table(const impact *s, const impact_case *c, const impact_resu
     printf("  mean plastic energy density     %10.2f MPa\n", r->particle.plastic_work_mean);
     printf("  flattening                      %10.4f     crater %.3f um deep\n", r->flattening, r->crater);
     printf("  area of the particle, contact   %10.3f um2, bonded %.3f um2\n", r->contact_area, r->bonded_area);
+    if (r->meeting.touched > 0)
+        printf("  dissipated at the interface     %10.1f J/m2  adhesion %.1f J/m2 where bonded\n",
+               r->meeting.dissipated, case_share(r->meeting.adhesion, r->meeting.bonded));
     printf("  highest temperature             %10.1f K\n", r->all.temperature_max);
     printf("  points ejected, retired         %10ld, %lld of %ld\n", r->rebound.ejected, (long long)w->retired,
            r->all.points);

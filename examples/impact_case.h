@@ -17,6 +17,7 @@
 #define IMPACT_SYMMETRIES "full|half|quarter"
 #define IMPACT_GEOMETRIES "3d|axisymmetric"
 #define IMPACT_CONTACTS "nodes|surface"
+#define IMPACT_BONDS "interface" MPM_BOND_RULE_LIST(CASE_BAR)
 
 /* What to run. Every member is an option of examples/impact; the defaults are its main job. */
 typedef struct impact_case {
@@ -34,6 +35,8 @@ typedef struct impact_case {
     double friction;
     int touch;                                     /* 1: bodies touch where their points do */
     double surface_damping;                        /* of contact on surfaces, rho c */
+    double adhesion, adhesion_critical;            /* bond of the interface: W0, G_c, J/m2 */
+    double adhesion_depth, adhesion_reach;         /* its layer's depth, how far it is drawn open, um */
     int springs;                                   /* 1: the substrate's dampers have springs beside them */
     double gap, offset;                            /* um: start distance; shift of the grid */
     double margin;                                 /* free grid around the bodies, particle diameters */
@@ -77,6 +80,10 @@ static inline impact_case impact_case_default(void)
     c.scheme = "thesis";
     c.contact = "nodes";
     c.surface_damping = 1;
+    c.adhesion = 43;
+    c.adhesion_critical = 1600;
+    c.adhesion_depth = 1.5;
+    c.adhesion_reach = 0.2;
     return c;
 }
 
@@ -97,10 +104,16 @@ typedef struct impact {
 static inline int impact_agrees(const impact_case *c, char *m, size_t n)
 {
     const int round_ball = !strcmp(c->shape, "sphere");
+    const int surface = !strcmp(c->contact, "surface"), interface = !strcmp(c->bond, "interface");
     if (round_ball && (c->aspect < 1 || c->aspect > 1))
         return case_wants(0, "aspect", c->aspect, "a sphere has none: add --shape ellipsoid", m, n);
-    if (!strcmp(c->contact, "surface") && (strcmp(c->geometry, "axisymmetric") || strcmp(c->bond, "none"))) {
-        snprintf(m, n, "--contact surface is axisymmetric and has no bond: add --geometry axisymmetric --bond none");
+    if (surface && (strcmp(c->geometry, "axisymmetric") || (strcmp(c->bond, "none") && !interface))) {
+        snprintf(m, n, "--contact surface is axisymmetric, with a bond of its own: add --geometry axisymmetric and "
+                       "--bond interface (or none)");
+        return 0;
+    }
+    if (interface && !surface) {
+        snprintf(m, n, "--bond interface is one of surfaces: add --contact surface");
         return 0;
     }
     if (!(fabs(c->angle) > 0)) return 1;
@@ -168,7 +181,14 @@ static inline int impact_check(const impact_case *c, char *m, size_t n)
            case_wants(c->offset > -big && c->offset < big, "grid-offset", c->offset, "must be within 1e6 um", m, n) &&
            case_knows(IMPACT_SHAPES, "shape", c->shape, m, n) &&
            case_knows(IMPACT_MODELS, "model", c->model, m, n) &&
-           case_knows(MPM_NAMES(MPM_BOND_RULE_LIST), "bond", c->bond, m, n) &&
+           case_wants(c->adhesion > 0 && c->adhesion < 1e30, "adhesion", c->adhesion, "must be > 0 J/m2", m, n) &&
+           case_wants(c->adhesion_critical > 0 && c->adhesion_critical < 1e30, "adhesion-critical",
+                        c->adhesion_critical, "must be > 0 J/m2", m, n) &&
+           case_wants(c->adhesion_depth > 0 && c->adhesion_depth < big, "adhesion-depth", c->adhesion_depth,
+                        "must be in (0, 1e6) um", m, n) &&
+           case_wants(c->adhesion_reach > 0 && c->adhesion_reach < big, "adhesion-reach", c->adhesion_reach,
+                        "must be in (0, 1e6) um", m, n) &&
+           case_knows(IMPACT_BONDS, "bond", c->bond, m, n) &&
            case_knows(MPM_NAMES(MPM_BOND_AVERAGE_LIST), "bond-average", c->bond_average, m, n) &&
            case_knows(IMPACT_SYMMETRIES, "symmetry", c->symmetry, m, n) &&
            case_knows(IMPACT_GEOMETRIES, "geometry", c->geometry, m, n) &&
@@ -242,7 +262,8 @@ static inline mpm_bond impact_bond(const impact_case *c)
 {
     const mpm_units units = mpm_units_um_us_ng();
     mpm_bond b = mpm_bond_default(&units);
-    b.rule = (mpm_bond_rule)word_place(MPM_NAMES(MPM_BOND_RULE_LIST), c->bond);
+    b.rule = MPM_BOND_NONE; /* one of the interface is the surfaces' */
+    if (strcmp(c->bond, "interface")) b.rule = (mpm_bond_rule)word_place(MPM_NAMES(MPM_BOND_RULE_LIST), c->bond);
     b.average = (mpm_bond_average)word_place(MPM_NAMES(MPM_BOND_AVERAGE_LIST), c->bond_average);
     b.critical = (mpm_real)(b.rule == MPM_BOND_STRAIN ? c->eps_c : c->gc);
     b.critical_rate = (mpm_real)(b.rule == MPM_BOND_STRAIN ? c->epsdot_c : c->gdot);
@@ -285,6 +306,10 @@ static inline int impact_surfaces(impact *s, const impact_case *c, char *message
     s->surfaces = mpm_surfaces_default();
     s->surfaces.damping = (mpm_real)c->surface_damping;
     s->surfaces.friction = (mpm_real)c->friction;
+    s->surfaces.adhesion = (mpm_real)(strcmp(c->bond, "interface") ? 0 : c->adhesion);
+    s->surfaces.critical = (mpm_real)c->adhesion_critical;
+    s->surfaces.depth = (mpm_real)c->adhesion_depth;
+    s->surfaces.reach = (mpm_real)c->adhesion_reach;
     for (b = 0; b < s->world.bodies && !strcmp(c->contact, "surface"); b++)
         if (mpm_surface_add(&s->surfaces, &s->world, b) != MPM_OK) {
             mpm_io_fault_text(message, n, &s->surfaces.fault);
@@ -375,6 +400,7 @@ typedef struct impact_result {
                                                           ejected ones fly far */
     double crater;                                     /* see mpm_splat */
     double contact_area, bonded_area;                  /* of the whole particle: see mpm_bond_measure */
+    mpm_meeting meeting;                               /* of contact on surfaces */
     double ejected_fraction;                           /* of the particle's mass, faster than 60 m/s */
     double mass_error, momentum_error, energy_error;   /* relative; energy: kinetic + internal + absorbed */
     double energy_unaccounted;                         /* the same with contact and bond losses */
@@ -412,8 +438,11 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
     r.crater = mpm_splat_measure(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE, MPM_R(1e15)).crater; /* deep points move */
     r.contact_area = r.particle_bond.contacted_area * impact_copies(s);
     r.bonded_area = r.particle_bond.bonded_area * impact_copies(s);
-    if (s->surfaces.surfaces > 0)
-        r.contact_area = mpm_surface_meets(&s->surfaces, w, IMPACT_PARTICLE, IMPACT_SUBSTRATE).area;
+    if (s->surfaces.surfaces > 0) {
+        r.meeting = mpm_surface_meets(&s->surfaces, w, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
+        r.contact_area = r.meeting.touched > 0 ? r.meeting.touched : r.meeting.area;
+        r.bonded_area = r.meeting.bonded;
+    }
     r.ejected_fraction = r.rebound.ejected_mass / r.particle.mass;
     energy = s->start.kinetic + s->start.internal;
     r.mass_error = (r.all.mass - s->start.mass) / s->start.mass;

@@ -31,7 +31,7 @@ static inline int impact_options(impact_case *c, option *o)
     option_add(o, &n, "substrate-height", OPTION_REAL, &c->substrate_height, "um");
     option_add(o, &n, "time", OPTION_REAL, &c->time, "simulated time, ns");
     option_add(o, &n, "dt-factor", OPTION_REAL, &c->dt_factor, "time step over the critical step of a 0.5 um cell");
-    option_add_word(o, &n, "bond", &c->bond, MPM_NAMES(MPM_BOND_RULE_LIST), "what makes the bond grow");
+    option_add_word(o, &n, "bond", &c->bond, IMPACT_BONDS, "what makes the bond grow; interface: with contact surface");
     option_add_word(o, &n, "bond-average", &c->bond_average, MPM_NAMES(MPM_BOND_AVERAGE_LIST),
                     "D of a node from its surface points");
     option_add(o, &n, "gc", OPTION_REAL, &c->gc, "critical bond energy, J/m2");
@@ -52,8 +52,12 @@ static inline int impact_options(impact_case *c, option *o)
     option_add(o, &n, "touch", OPTION_FLAG, &c->touch,
                "contact where the points themselves touch, not where they share a node");
     option_add_word(o, &n, "contact", &c->contact, IMPACT_CONTACTS,
-                    "where bodies meet: at shared nodes, or on their surfaces (axisymmetric, bond none)");
+                    "where bodies meet: at shared nodes, or on their surfaces (axisymmetric, bond interface or none)");
     option_add(o, &n, "surface-damping", OPTION_REAL, &c->surface_damping, "damper of contact on surfaces, rho c");
+    option_add(o, &n, "adhesion", OPTION_REAL, &c->adhesion, "bond of the interface: W0 of W0 (G/G_c - 1), J/m2");
+    option_add(o, &n, "adhesion-critical", OPTION_REAL, &c->adhesion_critical, "... its G_c, J/m2");
+    option_add(o, &n, "adhesion-depth", OPTION_REAL, &c->adhesion_depth, "... depth of the layer that G is of, um");
+    option_add(o, &n, "adhesion-reach", OPTION_REAL, &c->adhesion_reach, "... how far it is drawn open, um");
     option_add(o, &n, "springs", OPTION_FLAG, &c->springs, "springs beside the substrate's dampers: a half space");
     option_add_word(o, &n, "plasticity", &c->plasticity, MPM_NAMES(MPM_RETURN_LIST), "return mapping");
     option_add(o, &n, "gap", OPTION_REAL, &c->gap, "distance of the bodies at the start, um");

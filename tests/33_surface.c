@@ -360,6 +360,65 @@ static void stacks(void)
     CHECK_TRUE("... each moves", fabs(v[0][0]) > 0.1 && fabs(v[0][1]) > 0.1);
 }
 
+/* ---- adhesion ---------------------------------------------------------------------------------- */
+
+/* Two blocks of two cells' width, pressed together at 5 m/s while the plastic work of all points rises to w, then drawn
+   apart at 10 m/s each, rigidly: what the bond took, over the area, and the largest pull. */
+static void drawn(double work, double critical, double *energy, double *pull, double *dissipated)
+{
+    mpm_desc d = scene_grid(1, 2, 1, 12, 0, 0, -6);
+    mpm_surfaces s = mpm_surfaces_default();
+    double before;
+    mpm_world w;
+    int32_t k, i;
+    int n;
+    d.geometry = MPM_PLANE_STRAIN;
+    d.basis = MPM_CUBIC;
+    d.side[0] = d.side[1] = MPM_SIDE_SYMMETRY;
+    s.adhesion = 40;
+    s.critical = (mpm_real)critical;
+    s.depth = MPM_R(1.5);
+    s.reach = MPM_R(0.2);
+    mpm_init(&w, &d, NULL, 0);
+    for (k = 0; k < 2; k++) {
+        const mpm_real low = k ? -3 : MPM_R(0.001);
+        mpm_body_desc b = scene_body(&metal, mpm_box(0, 0, low, 2, 1, low + 3), 0.5, k ? 5 : -5);
+        b.stress = NULL;
+        mpm_body_add(&w, &b);
+        CHECK_EQUAL("a block's outline and layer", mpm_surface_add(&s, &w, k), MPM_OK);
+    }
+    for (n = 0; n < 40; n++) {
+        for (i = 0; i < w.points.count; i++) w.points.plastic_work[i] = (mpm_real)(n < 20 ? 0 : work);
+        if (mpm_surface_step(&s, &w, MPM_R(1e-5)) < 0) break;
+    }
+    *dissipated = mpm_surface_meets(&s, &w, 0, 1).dissipated;
+    before = w.ledger.hold;
+    *pull = 0;
+    for (n = 0; n < 1500; n++) {
+        mpm_meeting m;
+        for (i = 0; i < w.points.count; i++) w.points.v[2][i] = i < w.body[1].first ? 10 : -10;
+        if (mpm_surface_step(&s, &w, MPM_R(1e-5)) < 0) break;
+        m = mpm_surface_meets(&s, &w, 0, 1);
+        *pull = fmax(*pull, -m.pull[2]);
+    }
+    *energy = (w.ledger.hold - before) / 2;
+    CHECK_EQUAL("... spent at last", mpm_surface_meets(&s, &w, 0, 1).bonded > 0, 0);
+    mpm_surfaces_free(&s);
+    mpm_free(&w);
+}
+
+/* G = l (w + w) = 3 w; W = W0 (G/G_c - 1); at most 2 W/delta_c. */
+static void adhesion(void)
+{
+    double energy, pull, G;
+    drawn(1000, 2000, &energy, &pull, &G);
+    CHECK_RELATIVE("adhesion: G of two layers [J/m2]", G, 3000, 1e5 * eps);
+    CHECK_RELATIVE("... takes W0 (G/G_c - 1) [J/m2]", energy, 20, 0.03);
+    CHECK_RELATIVE("... at most 2 W/delta_c on the area [uN]", pull, 2 * 200, 0.03);
+    drawn(500, 2000, &energy, &pull, &G);
+    CHECK_NEAR("below G_c there is none", energy + pull, 0, 1e5 * eps);
+}
+
 int main(void)
 {
     metal = scene_metal(1, mpm_units_um_us_ng());
@@ -373,5 +432,6 @@ int main(void)
     incline(0.3);
     incline(0.7);
     stacks();
+    adhesion();
     return check_end();
 }

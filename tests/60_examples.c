@@ -43,16 +43,19 @@ static void surfaces(void)
 {
     const char *path = "build/tests/surface/summary.json";
     CHECK_EQUAL("contact on surfaces",
-                run("--time 12 --geometry axisymmetric --functions cubic --contact surface --bond none --springs "
+                run("--time 12 --geometry axisymmetric --functions cubic --contact surface --bond interface --springs "
                     "--scheme consistent --gap 0.1 --dt-factor 0.3 --frames 2 --out build/tests/surface"), 0);
     CHECK_NEAR("... energy unaccounted", number_in(path, "energy_unaccounted"), 0, 0.005);
     CHECK_NEAR("... momentum error", number_in(path, "momentum_error"), 0, 1e-12);
-    CHECK_TRUE("... area under pressure", number_in(path, "contact_area_um2") > 20);
+    CHECK_TRUE("... area that touched", number_in(path, "contact_area_um2") > 20);
+    CHECK_TRUE("... dissipation of the interface", number_in(path, "interface_dissipation_J_m2") > 300);
     CHECK_TRUE("... series of outlines",
                strstr(text_of("build/tests/surface/surface.pvd"), "surface_0001.vtu") != NULL);
     CHECK_TRUE("... with their pressure",
                strstr(text_of("build/tests/surface/surface_0001.vtu"), "contact pressure (MPa)") != NULL);
-    refused("--contact surface", "--geometry axisymmetric --bond none");
+    refused("--contact surface", "--geometry axisymmetric");
+    refused("--bond interface", "--contact surface");
+    refused("--contact surface --geometry axisymmetric --bond interface --adhesion-reach 0", "0");
     refused("--contact faces", "faces");
     refused("--surface-damping -1", "-1");
 }

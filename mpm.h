@@ -373,7 +373,7 @@ typedef mpm_status (*mpm_stress_fn)(const void *material, const mpm_block *block
 /* ---- lists --------------------------------------------------------------------------------- */
 
 /* Each choice stands once, as X(constant, "word", "meaning"): the enum, the checks and the option lists of the
-   programs are made from it. MPM_NAMES(MPM_BASIS_LIST) is "linear|gimp". */
+   programs are made from it. MPM_NAMES(MPM_BASIS_LIST) is "linear|gimp|quadratic|cubic". */
 #define MPM_LIST_ENUM(name, word, text) name,
 #define MPM__NAME_BAR(name, word, text) "|" word
 #define MPM_NAMES(LIST) (&("" LIST(MPM__NAME_BAR))[1])
@@ -1227,15 +1227,24 @@ MPM__KERNEL mpm_real *mpm__node_vector(mpm_node *n, mpm__vector which)
     }
 }
 
+/* The turning of images in V, node by node. */
+static inline void mpm__turn(const mpm_run *r, int k, int ky, mpm_real V[3][MPM_SUPPORT])
+{
+    int a, d;
+    for (a = 0; a < k * ky * k; a++)
+        for (d = 0; d < 3; d++) V[d][a] *= mpm__mirror(r, a, d, k, ky);
+}
+
 /* Adds V, summed over points of a run, to its nodes. */
 MPM__KERNEL void mpm__scatter(mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which,
                               mpm_real V[3][MPM_SUPPORT])
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     int a, d;
+    if (r->flags & 63) mpm__turn(r, k, ky, V);
     for (a = 0; a < k * ky * k; a++) {
         mpm_real *to = mpm__node_vector(&w->node[slot[a]], which);
-        for (d = 0; d < 3; d++) to[d] += (r->flags & 63) ? V[d][a] * mpm__mirror(r, a, d, k, ky) : V[d][a];
+        for (d = 0; d < 3; d++) to[d] += V[d][a];
     }
 }
 
@@ -1251,19 +1260,19 @@ MPM__KERNEL void mpm__gather(const mpm_world *w, const mpm_run *r, int k, int ky
         mpm_node *n = &w->node[slot[a]];
         const mpm_real *from = mpm__node_vector(n, which);
         const mpm_real f = n->mass > cutoff ? (per_mass ? 1 / n->mass : 1) : 0;
-        for (d = 0; d < 3; d++)
-            V[d][a] = (r->flags & 63) ? from[d] * f * mpm__mirror(r, a, d, k, ky) : from[d] * f;
+        for (d = 0; d < 3; d++) V[d][a] = from[d] * f;
     }
+    if (r->flags & 63) mpm__turn(r, k, ky, V);
 }
 
-/* call(k, ky, hoop) with the support and the geometry of a world as constants. */
-#define MPM__SPECIALISED(w, call)                                                   \
+/* call(k, ky, hoop) with the support and the geometry of a world as constants; rings: 1 where hoop matters. */
+#define MPM__SPECIALISED(w, rings, call)                                            \
     do {                                                                            \
         const int mpm__k = (w)->support[0], mpm__flat_here = mpm__flat(&(w)->desc); \
-        const int mpm__hoop = (w)->desc.geometry == MPM_AXISYMMETRIC;               \
+        const int mpm__hoop = (rings) && (w)->desc.geometry == MPM_AXISYMMETRIC;    \
         if (!mpm__flat_here && mpm__k == 2) call(2, 2, 0);                          \
         else if (!mpm__flat_here && mpm__k == 3) call(3, 3, 0);                     \
-        else if (!mpm__flat_here) call(4, 4, 0);                                    \
+        else if (!mpm__flat_here) call(mpm__k, mpm__k, 0); /* 64 nodes: loops */    \
         else if (mpm__k == 2 && !mpm__hoop) call(2, 1, 0);                          \
         else if (mpm__k == 2) call(2, 1, 1);                                        \
         else if (mpm__k == 3 && !mpm__hoop) call(3, 1, 0);                          \
@@ -1273,12 +1282,12 @@ MPM__KERNEL void mpm__gather(const mpm_world *w, const mpm_run *r, int k, int ky
     } while (0)
 
 /* call(k, ky, hoop) for every run of w, which is `run` there. */
-#define MPM__EACH_RUN(w, call)                                                      \
+#define MPM__EACH_RUN(w, rings, call)                                               \
     do {                                                                            \
         int32_t mpm__i;                                                             \
         for (mpm__i = 0; mpm__i < (w)->runs; mpm__i++) {                            \
             mpm_run *run = &(w)->run[mpm__i];                                       \
-            MPM__SPECIALISED(w, call);                                              \
+            MPM__SPECIALISED(w, rings, call);                                       \
         }                                                                           \
     } while (0)
 
@@ -1599,7 +1608,7 @@ MPM_API void mpm_p2g(mpm_world *w)
 {
     int32_t i;
 #define MPM__CALL(k, ky, hoop) mpm__p2g_run(w, run, k, ky, 0)
-    MPM__EACH_RUN(w, MPM__CALL);
+    MPM__EACH_RUN(w, 0, MPM__CALL);
 #undef MPM__CALL
     for (i = 0; i < w->nodes; i++)
         if (w->node[i].flags) mpm__constrain(w, &w->node[i], w->node[i].momentum, NULL);
@@ -1689,7 +1698,7 @@ static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r)
         for (p = 0; p < n; p++)
             for (face = 0; face < 2; face++) {
                 const int32_t i = at + p;
-                mpm_real v[3], normal[3] = {0, 0, 1}, vn = 0, cn, ct, t[3], area;
+                mpm_real v[3], normal[3] = {0, 0, 1}, vn = 0, cn, ct, t[3];
                 if (!(q->flags[i] & d->absorb & (face ? MPM_FACE_RIM : MPM_FACE_BOTTOM))) continue;
                 if (face) { /* radial, whatever the section */
                     mpm_real x = q->x[0][i] - d->shape.center[0], y = ky > 1 ? q->x[1][i] - d->shape.center[1] : 0;
@@ -1698,14 +1707,14 @@ static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r)
                     normal[1] = radius > 0 ? y / radius : 0;
                     normal[2] = 0;
                 }
-                area = b->area[face] * q->mass[i] / b->mass[face];
-                cn = d->absorb_normal * d->density * d->wave_p * area;
-                ct = d->absorb_shear * d->density * d->wave_s * area;
+                cn = d->absorb_normal * d->density * d->wave_p * b->area[face] * q->mass[i] / b->mass[face];
+                ct = d->absorb_shear * d->density * d->wave_s * b->area[face] * q->mass[i] / b->mass[face];
                 for (c = 0; c < 3; c++) v[c] = mpm__value(&s, p, k, ky, V[c]);
                 for (c = 0; c < 3; c++) vn += v[c] * normal[c];
                 mpm__products(&s, p, k, ky, N);
                 for (c = 0; c < 3; c++) t[c] = -(cn - ct) * vn * normal[c] - ct * v[c];
-                if (d->absorb_spring > 0) mpm__spring_pull(w, b, i, area, normal, t);
+                if (d->absorb_spring > 0)
+                    mpm__spring_pull(w, b, i, b->area[face] * q->mass[i] / b->mass[face], normal, t);
                 for (c = 0; c < 3; c++) {
                     for (a = 0; a < k * ky * k; a++) F[c][a] += t[c] * N[a];
                     w->ledger.absorbed -= (double)(t[c] * v[c] * dt);
@@ -1783,7 +1792,7 @@ MPM_API void mpm_forces(mpm_world *w)
 {
     int32_t i;
 #define MPM__CALL(k, ky, hoop) mpm__forces_run(w, run, k, ky, hoop)
-    MPM__EACH_RUN(w, MPM__CALL);
+    MPM__EACH_RUN(w, 1, MPM__CALL);
 #undef MPM__CALL
     mpm__mirror_force(w);
     for (i = 0; i < w->runs; i++)
@@ -2483,7 +2492,7 @@ MPM_API void mpm_g2p(mpm_world *w)
 {
     int32_t i;
 #define MPM__CALL(k, ky, hoop) mpm__g2p_run(w, run, k, ky)
-    MPM__EACH_RUN(w, MPM__CALL);
+    MPM__EACH_RUN(w, 0, MPM__CALL);
 #undef MPM__CALL
     for (i = 0; i < w->runs; i++)
         if (w->run[i].flags & 63) mpm__mirror_run(w, &w->run[i]);
@@ -2516,7 +2525,7 @@ MPM_API void mpm_musl(mpm_world *w)
     int32_t i;
     int d;
 #define MPM__CALL(k, ky, hoop) mpm__p2g_run(w, run, k, ky, 1)
-    MPM__EACH_RUN(w, MPM__CALL);
+    MPM__EACH_RUN(w, 0, MPM__CALL);
 #undef MPM__CALL
     for (i = 0; i < w->nodes; i++) {
         mpm_node *n = &w->node[i];
@@ -2700,7 +2709,7 @@ MPM_API mpm_status mpm_stress(mpm_world *w)
     for (b = 0; b < w->bodies; b++, from = to) {
         while (to < w->runs && w->run[to].body == b) to++;
 #define MPM__CALL(k, ky, hoop) s = mpm__stress_body(w, b, from, to, k, ky, hoop)
-        MPM__SPECIALISED(w, MPM__CALL);
+        MPM__SPECIALISED(w, 1, MPM__CALL);
 #undef MPM__CALL
         if (s < 0) return s;
     }
@@ -2729,7 +2738,7 @@ MPM__KERNEL void mpm__move_run(mpm_world *w, const mpm_run *r, int k, int ky)
 MPM_API void mpm_move(mpm_world *w)
 {
 #define MPM__CALL(k, ky, hoop) mpm__move_run(w, run, k, ky)
-    MPM__EACH_RUN(w, MPM__CALL);
+    MPM__EACH_RUN(w, 0, MPM__CALL);
 #undef MPM__CALL
     w->time += w->dt;
     w->dt_last = w->dt;

@@ -62,7 +62,7 @@
      when drawn open by delta_c (S5). It belongs to the two bodies that met, and costs what it takes: ledger.hold.
 
    WHAT IT DOES NOT DO: surfaces of three-dimensional bodies; contact of a body with itself; more than two other bodies
-   at a marker.
+   at a marker; checkpoints of surfaces.
 
    Sources: penalty between a surface's points and another's faces, taken both ways, and friction by a spring that
    slips: Wriggers, Computational Contact Mechanics, Springer (2006). */
@@ -264,7 +264,6 @@ MPM_API mpm_surfaces mpm_surfaces_default(void)
     s.damping = 1;
     s.softening = MPM_R(0.002);
     s.longest = MPM_R(0.5);
-    s.critical = s.depth = s.reach = 0;
     s.both = 1;
     s.renew = 20;
     return s;

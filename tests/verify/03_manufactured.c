@@ -175,10 +175,10 @@ static void vortex(void)
         "The body force jumps from 0 to its largest value at both edges of the ring, and the lattice of points "
         "follows the edges in steps of one spacing: that, more than the grid, sets the error of small turns, between "
         "first and second order (points equally close on a grid twice as coarse: 1.1 to 1.7 times the error). Splines "
-        "smear the edges furthest and begin with the larger error. Linear functions fail where points cross cells "
-        "(A = 0.1). A turn of 1 rad shears the ring by up to 6: neighbouring points move several cells apart, nothing "
-        "holds them together, and the ring is lost, whatever the functions. Methods whose points deform with F, or "
-        "whose grid follows the undeformed body, are made for that; this one is not.");
+        "have up to 2.3 times GIMP's error at 1/16 and 1/32, and less than GIMP at 1/64 and A = 0.1. Linear functions "
+        "fail where points cross cells (A = 0.1). A turn of 1 rad shears the ring by up to 6: neighbouring points move "
+        "several cells apart, nothing holds them together, and the ring is lost, whatever the functions. Methods whose "
+        "points deform with F, or whose grid follows the undeformed body, are made for that; this one is not.");
 }
 
 int main(void)

@@ -111,6 +111,11 @@ BUDGET ?= full
 spray-study: build/spray_study ## source B's results again: a quarter of an hour, resumable; BUDGET=quick: less
 	build/spray_study --budget $(BUDGET)
 
+# Writes the tables of docs/prediction.md, and docs/data; finished runs are kept in build/predict.
+POSITIONS ?= 4
+predict: build/impact build/critical_velocity ## contact on surfaces, whatever the grid: 40 minutes, resumable; POSITIONS=4
+	sh examples/studies/prediction.sh $(POSITIONS)
+
 # fuzz needs clang with libFuzzer; hard takes what it finds of tools and skips the others. CHECKS="gcc kill": these only.
 SECONDS ?= 20
 fuzz: ## random inputs for everything that reads or describes: SECONDS=20 for each target of tests/fuzz
@@ -167,4 +172,4 @@ dist: build/mpm_all.h ## a release: build/mpm-VERSION.tar.gz, and build/mpm_all.
 clean: ## removes build/
 	rm -rf build
 
-.PHONY: all help run test fuzz hard coverage verify impacts reproduction spray-study bench bench-against footprint figures install uninstall dist clean
+.PHONY: all help run predict test fuzz hard coverage verify impacts reproduction spray-study bench bench-against footprint figures install uninstall dist clean

@@ -35,9 +35,8 @@ unbonded() { # cell, spacing, substrate diameter and height, dt-factor, position
 table=docs/data/prediction_unbonded.csv
 {
     echo "cell_um,spacing_um,substrate_um,grid_offset_um,rebound_m_s,mean_strain,contact_fraction,energy_unaccounted,noise_m_s,cpu_s"
-    unbonded 1 0.25 50 25 0.2 $((2 * positions))
-    unbonded 1 0.25 35 17.5 0.2 "$positions"
-    unbonded 0.7 0.175 50 25 0.14 "$positions"
+    unbonded 1 0.25 50 25 0.2 "$positions"
+    unbonded 1 0.25 35 17.5 0.2 $(((positions + 1) / 2))
 } >"$out/unbonded.csv"
 mv "$out/unbonded.csv" $table
 
@@ -80,9 +79,8 @@ sed '/^| cell/,$d' docs/prediction.md >"$out/page.md"
     cat "$out/page.md"
     echo "| cell, um | spacing, um | substrate, um | positions | rebound, m/s | mean plastic strain | lost in contact | CPU, s |"
     echo "|---|---|---|---|---|---|---|---|"
-    line 1 0.25 50 $((2 * positions))
-    line 1 0.25 35 "$positions"
-    line 0.7 0.175 50 "$positions"
+    line 1 0.25 50 "$positions"
+    line 1 0.25 35 $(((positions + 1) / 2))
     echo
     echo "| diameter, um | cell, um | spacing, um | positions | critical velocity, m/s | lowest | highest |"
     echo "|---|---|---|---|---|---|---|"

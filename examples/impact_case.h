@@ -34,10 +34,10 @@ typedef struct impact_case {
     double shell;                                  /* thickness of the surface that contacts and bonds, spacings */
     double friction;
     int touch;                                     /* 1: bodies touch where their points do */
+    int springs;                                   /* 1: the substrate's dampers have springs beside them */
     double surface_damping;                        /* of contact on surfaces, rho c */
     double adhesion, adhesion_critical;            /* bond of the interface: W0, G_c, J/m2 */
     double adhesion_depth, adhesion_reach;         /* its layer's depth, how far it is drawn open, um */
-    int springs;                                   /* 1: the substrate's dampers have springs beside them */
     double gap, offset;                            /* um: start distance; shift of the grid */
     double margin;                                 /* free grid around the bodies, particle diameters */
     const char *shape, *material, *substrate_material, *model; /* "": substrate as particle */

@@ -6,7 +6,7 @@
 #include "impact_case.h"
 #include "options.h"
 
-#define IMPACT_OPTIONS 64 /* room for them and a program's own */
+#define IMPACT_OPTIONS 96 /* room for them and a program's own */
 
 /* Fills o[]; returns how many there are. Test: 62_studies, that no member is left out. */
 static inline int impact_options(impact_case *c, option *o)

@@ -120,7 +120,7 @@ static void refusals(void)
     refused("--model", "magic");
     refused("--wall", "soft");
     refused("--geometry", "4d");
-    refused("--functions", "cubic");
+    refused("--functions", "octic");
     CHECK_TRUE("unwritable folder", run("--time 1 --cell 0.8 --spacing 0.4 --out /proc/none") != 0);
 }
 

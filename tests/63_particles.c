@@ -271,7 +271,7 @@ static void repeated(void)
 /* Of many particles: the lowest on the substrate, none in another, all land in the region. */
 static void places(const char *shape, double aspect, double angle)
 {
-    const double tilt = angle * 3.14159265358979323846 / 180;
+    const double tilt = angle * (double)MPM_PI / 180;
     static particles_case q;
     char message[300];
     double closest = HUGE_VAL, farthest = 0, high, low;

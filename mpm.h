@@ -586,7 +586,8 @@ typedef struct mpm_body_desc {
     mpm_real wave_p, wave_s; /* longitudinal and shear wave speeds: time step and dampers */
     int absorb;              /* faces with a viscous damper: MPM_FACE_BOTTOM | MPM_FACE_RIM (A 3.46) */
     mpm_real absorb_normal, absorb_shear; /* damper factors a and b of A 3.46 (thesis: 1) */
-    mpm_real absorb_spring;  /* springs beside the dampers, for the half space that is not there: 1 is right, 0 none */
+    mpm_real absorb_spring;  /* springs beside the dampers, for the half space that is not there: 1 is right, 0 none.
+                                They take user fields, "first x" and so on, where the points began */
     mpm_real shell;          /* thickness of the MPM_POINT_SURFACE layer in spacings */
     int32_t id;              /* number of its first point, the others count on; -1: after the last one made */
 } mpm_body_desc;

@@ -131,7 +131,7 @@ typedef struct mpm_layer {
     int32_t first_id;         /* of the body's points */
     mpm_real round;           /* length of a closed surface; 0: an open one */
     mpm_real *along;          /* per station: length of the way to it, rising */
-    mpm_real *mean, *change;  /* plastic work per volume, and what it has grown by in this step [stress] */
+    mpm_real *mean, *change;  /* plastic work per volume, and what it has grown by since the look before [stress] */
     int32_t *begin;           /* per station, and one more: its entries */
     int32_t *point;           /* per entry: number of the point, less first_id */
     mpm_real *weight;         /* of it; they sum to 1 */
@@ -164,7 +164,8 @@ typedef struct mpm_surfaces {
     mpm_real friction;    /* Coulomb coefficient, >= 0 */
     mpm_real softening;   /* eps of (S1): weight of nodes whose mass is small beside rho cell^3, > 0 */
     mpm_real longest;     /* faces longer than this many cells are halved, > 0 */
-    mpm_real adhesion;    /* W0 [energy/area]: W = W0 (G/G_c - 1) where G exceeds G_c; 0: none */
+    mpm_real adhesion;    /* W0 [energy/area]: W = W0 (G/G_c - 1) where G exceeds G_c; 0: none. Set before surfaces are
+                             added: those added without it have no layer, and no share in G */
     mpm_real critical;    /* G_c [energy/area], > 0 with adhesion */
     mpm_real depth;       /* l: thickness of the layer on each side, and reach of its means along it [length] */
     mpm_real reach;       /* delta_c: how far adhesion is drawn open before it is spent [length] */
@@ -205,7 +206,8 @@ MPM_API mpm_status mpm_surface_add_chain(mpm_surfaces *s, const mpm_world *w, in
 MPM_API mpm_status mpm_surface_wall_add(mpm_surfaces *s, const mpm_real point[3], const mpm_real normal[3]);
 
 /* Finds who meets whom and puts the forces on the nodes; world.held counts the markers' meetings that adhesion draws
-   together. Between mpm_forces and mpm_grid_update. MPM_ERR_MEMORY. Test: 33_surface. */
+   together. Between mpm_forces and mpm_grid_update. Errors as mpm_surfaces_check; MPM_ERR_MEMORY.
+   Test: 33_surface. */
 MPM_API mpm_status mpm_surface_contact(mpm_surfaces *s, mpm_world *w);
 
 /* Moves the markers as their bodies' matter moves, with MUSL's velocity (with that of P(k+1) the penalty would take
@@ -214,8 +216,8 @@ MPM_API mpm_status mpm_surface_contact(mpm_surfaces *s, mpm_world *w);
    Test: 33_surface. */
 MPM_API mpm_status mpm_surface_move(mpm_surfaces *s, mpm_world *w);
 
-/* The step of mpm.h with contact on surfaces in place of contact at nodes. Errors as mpm_step, and MPM_ERR_MEMORY of
-   the surfaces: fault of the world. Test: 33_surface. */
+/* The step of mpm.h, of dt [time] > 0, with contact on surfaces in place of contact at nodes. Errors as mpm_step,
+   mpm_surface_contact and mpm_surface_move, with the fault in the world. Test: 33_surface. */
 MPM_API mpm_status mpm_surface_step(mpm_surfaces *s, mpm_world *w, mpm_real dt);
 
 /* How surface a meets surface b (-1: any other body), in the last step. */
@@ -231,7 +233,7 @@ typedef struct mpm_meeting {
     double adhesion;
 } mpm_meeting;
 
-/* Between steps, the force from a's own markers and b's together. Test: 33_surface. */
+/* Between steps, from the markers of a (one of the surfaces) and of b together. Test: 33_surface. */
 MPM_API mpm_meeting mpm_surface_meets(const mpm_surfaces *s, const mpm_world *w, int32_t a, int32_t b);
 
 #ifdef __cplusplus
@@ -354,15 +356,17 @@ static inline mpm_status mpm__surface_grow(mpm_surface *c, int32_t markers, int3
 
 /* ---- making a chain ------------------------------------------------------------------------------ */
 
-static inline mpm_marker mpm__surface_marker(mpm_real x, mpm_real z)
+/* Marker i of n, and the face from it to the next. */
+static inline void mpm__surface_put(mpm_surface *c, int32_t i, int32_t n, mpm_real x, mpm_real z)
 {
-    mpm_marker m;
+    mpm_marker *m = &c->marker[i];
     int k;
-    memset(&m, 0, sizeof m);
-    m.x[0] = x;
-    m.x[2] = z;
-    for (k = 0; k < MPM_SURFACE_MEETS; k++) m.meet[k].other = MPM_SURFACE_NONE;
-    return m;
+    memset(m, 0, sizeof *m);
+    m->x[0] = x;
+    m->x[2] = z;
+    for (k = 0; k < MPM_SURFACE_MEETS; k++) m->meet[k].other = MPM_SURFACE_NONE;
+    c->face[i][0] = i;
+    c->face[i][1] = i + 1 < n ? i + 1 : 0;
 }
 
 /* Which faces end and begin at each marker. */
@@ -504,32 +508,37 @@ static inline mpm_real mpm__surface_nearest(const mpm_surface *c, int32_t face, 
 
 /* ---- the layer under a surface ------------------------------------------------------------------- */
 
-/* Numbers the way along the surface: from its first open end, or from the first marker of a closed one. */
-static inline void mpm__layer_way(mpm_surface *c)
+/* Numbers the way along a part of the surface from marker `from` on. Returns the way at its end; the layer is round if
+   it leads back to where it began. */
+static inline mpm_real mpm__layer_part(mpm_surface *c, int32_t from, mpm_real way)
+{
+    while (c->marker[from].along < 0) {
+        const int32_t face = c->around[from][1], to = face < 0 ? from : c->face[face][1];
+        const mpm_real x = c->marker[to].x[0] - c->marker[from].x[0], z = c->marker[to].x[2] - c->marker[from].x[2];
+        c->marker[from].along = way;
+        way += mpm_sqrt(x * x + z * z);
+        from = to;
+    }
+    if (c->around[from][1] >= 0) c->layer.round = way;
+    return way;
+}
+
+/* Numbers all parts: from open ends, a reach of the means apart, or a closed one from its first marker. */
+static inline void mpm__layer_way(mpm_surface *c, mpm_real depth)
 {
     mpm_real way = 0;
-    int32_t i, from;
+    int32_t i;
     for (i = 0; i < c->markers; i++) c->marker[i].along = -1;
-    for (i = 0; i < 2 * c->markers; i++) { /* open ends first, then what is left: closed parts */
-        from = i % c->markers;
-        if (c->marker[from].along >= 0 || (i < c->markers && c->around[from][0] >= 0)) continue;
-        while (c->marker[from].along < 0) {
-            const int32_t face = c->around[from][1], to = face < 0 ? from : c->face[face][1];
-            const mpm_real *a = c->marker[from].x, *b = c->marker[to].x;
-            c->marker[from].along = way;
-            way += mpm_sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[2] - a[2]) * (b[2] - a[2]));
-            from = to;
-        }
-        c->layer.round = c->around[from][0] >= 0 ? way : 0; /* a closed surface is one part */
-        way += 1;
-    }
+    for (i = 0; i < c->markers; i++)
+        if (c->around[i][0] < 0) way = mpm__layer_part(c, i, way) + depth;
+    if (c->marker[0].along < 0) mpm__layer_part(c, 0, 0);
 }
 
 /* Distance along the surface. */
 static inline mpm_real mpm__layer_apart(const mpm_layer *y, mpm_real a, mpm_real b)
 {
     const mpm_real d = a > b ? a - b : b - a;
-    return d > y->round / 2 && y->round > 0 ? (d < y->round ? y->round - d : 0) : d;
+    return y->round > 0 && d > y->round / 2 ? y->round - d : d;
 }
 
 /* The place between two neighbours; at the seam of a closed surface the nearer of them. */
@@ -558,30 +567,24 @@ static inline mpm_real mpm__layer_foot(const mpm_surface *c, const mpm_real *x, 
 /* Weight of a point at q reaches from a station: (1 - q)^2 (1 + 2 q). */
 static inline mpm_real mpm__layer_weight(mpm_real q) { return q < 1 ? (1 - q) * (1 - q) * (1 + 2 * q) : 0; }
 
-/* Memory of a layer with its stations and `entries` of points. */
-static inline mpm_status mpm__layer_room(mpm_layer *y, int32_t entries, mpm_fault *f)
+/* The stations of a new layer: the markers' ways, rising. They come so but for where parts begin. */
+static inline mpm_status mpm__layer_stations(mpm_surface *c, mpm_fault *f)
 {
-    const size_t n = (size_t)y->stations;
+    mpm_layer *y = &c->layer;
+    const size_t n = (size_t)c->markers;
+    int32_t i, k;
     y->along = (mpm_real *)MPM_MALLOC(3 * n * sizeof *y->along);
     y->begin = (int32_t *)MPM_MALLOC((n + 1) * sizeof *y->begin);
-    y->point = (int32_t *)MPM_MALLOC(((size_t)entries + (size_t)y->points) * sizeof *y->point);
-    y->weight = (mpm_real *)MPM_MALLOC((size_t)entries * sizeof *y->weight);
-    if (!y->along || !y->begin || !y->point || !y->weight) return mpm__surface_full(f, entries);
+    if (!y->along || !y->begin) return mpm__surface_full(f, c->markers);
+    y->stations = c->markers;
     y->mean = y->along + n;
     y->change = y->mean + n;
-    y->where = y->point + entries;
-    return MPM_OK;
-}
-
-/* Sorts the stations' ways: they come in order but for where parts of the surface begin. */
-static inline void mpm__layer_sort(mpm_layer *y)
-{
-    int32_t i, k;
-    for (i = 1; i < y->stations; i++) {
-        const mpm_real a = y->along[i];
-        for (k = i; k > 0 && y->along[k - 1] > a; k--) y->along[k] = y->along[k - 1];
-        y->along[k] = a;
+    memset(y->mean, 0, 2 * n * sizeof *y->mean);
+    for (i = 0; i < c->markers; i++) {
+        for (k = i; k > 0 && y->along[k - 1] > c->marker[i].along; k--) y->along[k] = y->along[k - 1];
+        y->along[k] = c->marker[i].along;
     }
+    return MPM_OK;
 }
 
 /* Visits the points of a body that lie within the layer: counts their entries at all stations, or writes them. */
@@ -613,41 +616,42 @@ static inline int32_t mpm__layer_visit(const mpm_surfaces *s, const mpm_world *w
     return n;
 }
 
-/* The layer of a new surface, from the points as they lie. */
-static inline mpm_status mpm__layer_make(mpm_surfaces *s, const mpm_world *w, mpm_surface *c)
+/* The points' feet on the surface: how far along it, -1 where they lie deeper than the layer; and their numbers. */
+static inline void mpm__layer_feet(const mpm_surfaces *s, const mpm_world *w, mpm_surface *c, mpm_real *foot)
 {
     const mpm_body *b = &w->body[c->body];
-    mpm_layer *y = &c->layer;
-    mpm_real *foot = (mpm_real *)MPM_MALLOC(((size_t)b->count + (size_t)c->markers) * sizeof *foot);
-    mpm_status st;
     int32_t i;
     int d;
-    if (!foot) return mpm__surface_full(&s->fault, b->count);
-    mpm__layer_way(c);
-    y->stations = c->markers;
-    y->points = b->count;
-    y->first_id = b->count > 0 ? w->points.id[b->first] : 0;
+    c->layer.points = b->count;
+    c->layer.first_id = b->count > 0 ? w->points.id[b->first] : 0;
     for (i = 0; i < b->count; i++) {
         mpm_real x[3];
-        if (w->points.id[b->first + i] < y->first_id) y->first_id = w->points.id[b->first + i];
+        if (w->points.id[b->first + i] < c->layer.first_id) c->layer.first_id = w->points.id[b->first + i];
         for (d = 0; d < 3; d++) x[d] = w->points.x[d][b->first + i];
         if (!(mpm__layer_foot(c, x, &foot[i]) < s->depth)) foot[i] = -1;
     }
-    y->along = foot + b->count;
-    for (i = 0; i < c->markers; i++) y->along[i] = c->marker[i].along;
-    mpm__layer_sort(y);
-    i = mpm__layer_visit(s, w, c, foot, 0);
-    y->along = NULL;
-    st = mpm__layer_room(y, i, &s->fault);
+}
+
+/* The layer of a new surface, from the points as they lie. */
+static inline mpm_status mpm__layer_make(mpm_surfaces *s, const mpm_world *w, mpm_surface *c)
+{
+    const size_t points = (size_t)w->body[c->body].count;
+    mpm_layer *y = &c->layer;
+    mpm_real *foot = (mpm_real *)MPM_MALLOC((points + 1) * sizeof *foot);
+    mpm_status st = foot ? MPM_OK : mpm__surface_full(&s->fault, (int32_t)points);
+    mpm__layer_way(c, s->depth);
+    if (st == MPM_OK) st = mpm__layer_stations(c, &s->fault);
     if (st == MPM_OK) {
-        for (i = 0; i < c->markers; i++) {
-            y->along[i] = c->marker[i].along;
-            y->mean[i] = y->change[i] = 0;
-        }
-        mpm__layer_sort(y);
-        mpm__layer_visit(s, w, c, foot, 1);
+        size_t entries;
+        mpm__layer_feet(s, w, c, foot);
+        entries = (size_t)mpm__layer_visit(s, w, c, foot, 0);
+        y->point = (int32_t *)MPM_MALLOC((entries + points + 1) * sizeof *y->point);
+        y->weight = (mpm_real *)MPM_MALLOC((entries + 1) * sizeof *y->weight);
+        if (!y->point || !y->weight) st = mpm__surface_full(&s->fault, (int32_t)entries);
+        else y->where = y->point + entries;
     }
-    MPM_FREE(foot);
+    if (st == MPM_OK) mpm__layer_visit(s, w, c, foot, 1);
+    mpm__surface_release(foot);
     return st;
 }
 
@@ -676,6 +680,7 @@ static inline mpm_real mpm__layer_change(const mpm_layer *y, mpm_real along)
 {
     int32_t low = 0, high = y->stations - 1;
     mpm_real u;
+    if (y->stations == 0) return 0;
     while (high - low > 1) {
         const int32_t middle = (low + high) / 2;
         if (y->along[middle] > along) high = middle;
@@ -742,26 +747,22 @@ MPM_API mpm_status mpm_surface_add_chain(mpm_surfaces *s, const mpm_world *w, in
         if (!mpm_finite(x[i]) || !mpm_finite(z[i]))
             return mpm_fail(&s->fault, MPM_ERR_NAN, "place of a marker", mpm_finite(x[i]) ? z[i] : x[i], i);
     if ((st = mpm__surface_grow(c, n, n, &s->fault)) != MPM_OK) return mpm__surface_drop(c, st);
-    for (i = 0; i < n; i++) {
-        c->marker[i] = mpm__surface_marker(x[i], z[i]);
-        c->face[i][0] = i;
-        c->face[i][1] = i + 1 < n ? i + 1 : 0;
-    }
+    for (i = 0; i < n; i++) mpm__surface_put(c, i, n, x[i], z[i]);
     c->markers = n;
     c->faces = closed ? n : n - 1;
     return mpm__surface_finish(s, w);
 }
 
-/* Marker i of n on the outline of a box, counter-clockwise from its lower left corner: na below, nb at the right. */
+/* Marker i on the outline of a box, counter-clockwise from its lower left corner: na below and above, nb at a side. */
 static inline void mpm__surface_box(const mpm_shape *b, int32_t i, int32_t na, int32_t nb, mpm_real *x, mpm_real *z)
 {
-    const mpm_real x0 = b->center[0] - b->half[0], x1 = b->center[0] + b->half[0];
-    const mpm_real z0 = b->center[2] - b->half[2], z1 = b->center[2] + b->half[2];
-    const mpm_real along = (mpm_real)(i % (na + nb)), a = along / (mpm_real)na;
-    const mpm_real u = (along - (mpm_real)na) / (mpm_real)nb;
-    const int back = i >= na + nb, upright = i % (na + nb) >= na;
-    *x = !upright ? (back ? x1 + a * (x0 - x1) : x0 + a * (x1 - x0)) : back ? x0 : x1;
-    *z = !upright ? (back ? z1 : z0) : back ? z1 + u * (z0 - z1) : z0 + u * (z1 - z0);
+    static const int right[5] = {-1, 1, 1, -1, -1}, up[5] = {-1, -1, 1, 1, -1};
+    int side = 0;
+    mpm_real u;
+    for (; i >= (side % 2 ? nb : na); side++) i -= side % 2 ? nb : na;
+    u = (mpm_real)i / (mpm_real)(side % 2 ? nb : na);
+    *x = b->center[0] + b->half[0] * ((1 - u) * (mpm_real)right[side] + u * (mpm_real)right[side + 1]);
+    *z = b->center[2] + b->half[2] * ((1 - u) * (mpm_real)up[side] + u * (mpm_real)up[side + 1]);
 }
 
 MPM_API mpm_status mpm_surface_add(mpm_surfaces *s, const mpm_world *w, int32_t body)
@@ -791,9 +792,7 @@ MPM_API mpm_status mpm_surface_add(mpm_surfaces *s, const mpm_world *w, int32_t 
         } else {
             mpm__surface_box(b, i, na, nb, &x, &z);
         }
-        c->marker[i] = mpm__surface_marker(x, z);
-        c->face[i][0] = i;
-        c->face[i][1] = i + 1 < n ? i + 1 : 0;
+        mpm__surface_put(c, i, n, x, z);
     }
     c->markers = c->faces = n;
     return mpm__surface_finish(s, w);
@@ -1046,25 +1045,34 @@ static inline void mpm__surface_penalty(const mpm_surfaces *s, const mpm_world *
     *c = s->damping * (za < zb ? za : zb);
 }
 
+/* Adds the way that a marker slides over the other in this step to `slip`, which stays along the surface. */
+static inline void mpm__surface_slide(const mpm_surfaces *s, const mpm_marker *m, const mpm_meet *meet, mpm_real dt,
+                                      mpm_real *slip)
+{
+    mpm_real v[3], along = 0;
+    int d;
+    mpm__surface_velocity(s, meet, v);
+    for (d = 0; d < 3; d++) {
+        slip[d] += dt * (m->v[d] - v[d]);
+        along += slip[d] * meet->normal[d];
+    }
+    for (d = 0; d < 3; d++) slip[d] -= along * meet->normal[d];
+}
+
+static inline mpm_real mpm__surface_length(const mpm_real *v)
+{
+    return mpm_sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
 /* Coulomb's law by a spring that slips: traction t = -k slip, its length at most mu p. */
 static inline void mpm__surface_friction(const mpm_surfaces *s, const mpm_marker *m, mpm_meet *meet, mpm_real k,
                                          mpm_real dt, mpm_real *t)
 {
-    mpm_real v[3], along = 0, length = 0, most;
+    const mpm_real most = s->friction * meet->pressure / k;
+    mpm_real length;
     int d;
-    t[0] = t[1] = t[2] = 0;
-    mpm__surface_velocity(s, meet, v);
-    for (d = 0; d < 3; d++) {
-        v[d] = m->v[d] - v[d];
-        meet->slip[d] += dt * v[d];
-        along += meet->slip[d] * meet->normal[d];
-    }
-    for (d = 0; d < 3; d++) {
-        meet->slip[d] -= along * meet->normal[d];
-        length += meet->slip[d] * meet->slip[d];
-    }
-    length = mpm_sqrt(length);
-    most = s->friction * meet->pressure / k;
+    mpm__surface_slide(s, m, meet, dt, meet->slip);
+    length = mpm__surface_length(meet->slip);
     for (d = 0; d < 3; d++) {
         if (length > most) meet->slip[d] *= most / length;
         t[d] = -k * meet->slip[d];
@@ -1075,37 +1083,25 @@ static inline void mpm__surface_friction(const mpm_surfaces *s, const mpm_marker
    surface, a traction k o against it up to 2 W/delta_c, then falling to none at delta_c, and back to the origin when o
    falls: it never gives energy. Pressed again, it is whole again. */
 static inline void mpm__surface_adhere(const mpm_surfaces *s, const mpm_marker *m, mpm_meet *meet, mpm_real k,
-                                       mpm_real dt, mpm_real *t)
+                                       mpm_real dt)
 {
-    const mpm_real energy = s->adhesion * (meet->dissipated / s->critical - 1), most = 2 * energy / s->reach;
-    mpm_real v[3], open[3], along = 0, length = 0, bears;
+    const mpm_real most = 2 * s->adhesion * (meet->dissipated / s->critical - 1) / s->reach;
+    mpm_real open[3], length, bears;
     int d;
-    t[0] = t[1] = t[2] = 0;
+    memset(meet->tension, 0, sizeof meet->tension);
     if (meet->pressure > 0) {
         meet->touched = 1;
         meet->drawn[0] = meet->drawn[1] = meet->drawn[2] = meet->opened = 0;
-        return;
     }
-    if (!meet->touched) return;
-    mpm__surface_velocity(s, meet, v);
-    for (d = 0; d < 3; d++) {
-        meet->drawn[d] += dt * (m->v[d] - v[d]);
-        along += meet->drawn[d] * meet->normal[d];
-    }
-    for (d = 0; d < 3; d++) {
-        meet->drawn[d] -= along * meet->normal[d];
-        open[d] = meet->drawn[d] + (meet->gap > 0 ? meet->gap : 0) * meet->normal[d];
-        length += open[d] * open[d];
-    }
-    length = mpm_sqrt(length);
-    if (!(energy > 0) || !(length > 0)) return;
+    if (meet->pressure > 0 || !meet->touched) return;
+    mpm__surface_slide(s, m, meet, dt, meet->drawn);
+    for (d = 0; d < 3; d++) open[d] = meet->drawn[d] + (meet->gap > 0 ? meet->gap : 0) * meet->normal[d];
+    length = mpm__surface_length(open);
     if (length > meet->opened) meet->opened = length;
-    if (meet->opened >= s->reach) return; /* spent */
+    if (!(most > 0) || !(length > 0) || meet->opened >= s->reach) return; /* none, closed, spent */
     bears = k * meet->opened;
-    if (bears > most) bears = most * (1 - meet->opened / s->reach) / (1 - most / k / s->reach);
-    if (bears < 0) bears = 0;
-    if (bears > most) bears = most;
-    for (d = 0; d < 3; d++) t[d] = -bears * open[d] / meet->opened;
+    if (bears > most) bears = most * (s->reach - meet->opened) / (s->reach - most / k);
+    for (d = 0; d < 3; d++) meet->tension[d] = -bears * open[d] / meet->opened;
 }
 
 /* Adds what a marker gets from a meeting to it, and what it gives to the other's markers. */
@@ -1117,7 +1113,7 @@ static inline void mpm__surface_give(mpm_surfaces *s, mpm_marker *m, mpm_meet *m
     mpm_real t[3] = {0, 0, 0};
     int d;
     if (s->friction > 0) mpm__surface_friction(s, m, meet, k, dt, t);
-    if (s->adhesion > 0 && c) mpm__surface_adhere(s, m, meet, k, dt, meet->tension);
+    if (s->adhesion > 0 && c) mpm__surface_adhere(s, m, meet, k, dt);
     for (d = 0; d < 3; d++) {
         const mpm_real f = share * m->area * (meet->pressure * meet->normal[d] + t[d]);
         const mpm_real pull = share * m->area * meet->tension[d];
@@ -1149,7 +1145,7 @@ static inline void mpm__surface_press(mpm_surfaces *s, mpm_world *w, int32_t a, 
         p = -k * meet->gap - c * meet->rate;
         meet->pressure = p > 0 ? p : 0;
         mpm__surface_give(s, &own->marker[i], meet, k, w->dt, share);
-        w->held += meet->tension[0] * meet->tension[0] + meet->tension[2] * meet->tension[2] > 0;
+        w->held += mpm__surface_length(meet->tension) > 0;
     }
 }
 
@@ -1158,7 +1154,8 @@ MPM_API mpm_status mpm_surface_contact(mpm_surfaces *s, mpm_world *w)
     int32_t a, b, i;
     int d;
     mpm_support at;
-    mpm_status st = mpm__surface_find(s, w);
+    mpm_status st = mpm_surfaces_check(s, &s->fault);
+    if (st == MPM_OK) st = mpm__surface_find(s, w);
     if (st != MPM_OK) return st;
     w->held = 0;
     for (a = 0; a < s->surfaces; a++)

@@ -407,6 +407,56 @@ static void drawn(double work, double critical, double *energy, double *pull, do
     mpm_free(&w);
 }
 
+/* A layer is round where the surface is, and there alone; its means know no point of another part of the surface, or of
+   deeper down: a block's upper half works, its lower face does not notice. */
+static void layers(void)
+{
+    mpm_desc d = scene_grid(1, 10, 1, 20, 0, 0, -10);
+    mpm_body_desc b = scene_body(&metal, mpm_sphere(0, 0, 5, 3), 0.5, 0);
+    mpm_surfaces s = mpm_surfaces_default();
+    const mpm_layer *y;
+    double worst = 0, weight = 0;
+    int32_t k, i, low;
+    mpm_world w;
+    d.geometry = MPM_PLANE_STRAIN;
+    d.side[0] = d.side[1] = MPM_SIDE_SYMMETRY;
+    s.adhesion = s.critical = 1;
+    s.depth = MPM_R(1.5);
+    s.reach = MPM_R(0.2);
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &b);
+    b.shape = mpm_sphere(5, 0, -5, 3);
+    mpm_body_add(&w, &b);
+    b.shape = mpm_box(0, 0, -1, 10, 1, 1);
+    mpm_body_add(&w, &b);
+    for (k = 0; k < 3; k++) CHECK_EQUAL("a layer", mpm_surface_add(&s, &w, k), MPM_OK);
+    CHECK_NEAR("half a disk: an open one", s.surface[0].layer.round, 0, 0);
+    CHECK_RELATIVE("a whole one: round", s.surface[1].layer.round, 6 * pi, 0.001);
+    CHECK_NEAR("a slab from mirror to mirror: two open parts", s.surface[2].layer.round, 0, 0);
+    y = &s.surface[2].layer; /* one face comes first, the other a reach later */
+    low = s.surface[2].marker[0].x[2] < 0 ? 0 : 1;
+    for (k = 0; k < y->stations; k++)
+        for (i = y->begin[k]; i < y->begin[k + 1]; i++) {
+            const int32_t at = w.body[2].first + y->point[i];
+            const int below = y->along[k] < MPM_R(10.5) ? !low : low;
+            weight += (double)y->weight[i];
+            if ((double)w.points.x[2][at] * (below ? 1 : -1) > 0.5) worst = check_worst(worst, (double)y->weight[i]);
+        }
+    CHECK_RELATIVE("... weights sum to 1 at every station", weight, y->stations, 1e3 * eps);
+    CHECK_NEAR("... points of the other face have none", worst, 0, 0);
+    mpm_surfaces_free(&s);
+    s = mpm_surfaces_default();
+    CHECK_EQUAL("a surface without a layer", mpm_surface_add(&s, &w, 0), MPM_OK);
+    CHECK_EQUAL("... and another", mpm_surface_add(&s, &w, 1), MPM_OK);
+    s.adhesion = s.critical = s.depth = s.reach = 1;
+    CHECK_EQUAL("... has no share in G", mpm_surface_step(&s, &w, MPM_R(1e-5)), MPM_OK);
+    s.renew = 0;
+    CHECK_EQUAL("a parameter spoilt later", mpm_surface_step(&s, &w, MPM_R(1e-5)), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... is named", !strcmp(w.fault.field, "renew"));
+    mpm_surfaces_free(&s);
+    mpm_free(&w);
+}
+
 /* G = l (w + w) = 3 w; W = W0 (G/G_c - 1); at most 2 W/delta_c. */
 static void adhesion(void)
 {
@@ -432,6 +482,7 @@ int main(void)
     incline(0.3);
     incline(0.7);
     stacks();
+    layers();
     adhesion();
     return check_end();
 }

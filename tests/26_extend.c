@@ -333,6 +333,49 @@ static void outer_force(mpm_geometry geometry, mpm_basis basis, mpm_side floor, 
     mpm_free(&w);
 }
 
+/* A ball that is pushed evenly: what MUSL has mapped back at its points is the velocity after the push; the work is
+   that of the force through the mean of it and the one before. */
+static void mapped(mpm_basis basis)
+{
+    mpm_world w = ball(MPM_3D, basis, MPM_SIDE_OPEN, 0);
+    double worst = 0, work = 0;
+    mpm_support s;
+    mpm_real v[3], f[3];
+    int32_t r, i;
+    int d, pass;
+    mpm_locate(&w, step);
+    mpm_p2g(&w);
+    mpm_forces(&w);
+    for (pass = 0; pass < 2; pass++) {
+        for (r = 0; r < w.runs; r++)
+            for (i = w.run[r].first; i < w.run[r].first + w.run[r].count; i++) {
+                mpm_support_of(&w, &w.run[r], i, &s);
+                for (d = 0; d < 3; d++) f[d] = w.points.mass[i] * pull_down[d];
+                if (pass == 0) {
+                    mpm_push(&w, &s, f);
+                    continue;
+                }
+                mpm_support_mapped(&w, &s, v);
+                worst = check_worst(worst, fabs((double)(v[0] - 10 - step * pull_down[0])));
+                worst = check_worst(worst, fabs((double)(v[1] - step * pull_down[1])));
+                worst = check_worst(worst, fabs((double)(v[2] + 20 - step * pull_down[2])));
+                work += mpm_support_work(&w, &s, f);
+            }
+        if (pass == 0) {
+            mpm_grid_update(&w);
+            mpm_g2p(&w);
+            mpm_musl(&w);
+        }
+    }
+    CHECK_NEAR("pushed evenly: the velocity that MUSL has mapped back", worst / 20, 0, 1e3 * eps);
+    CHECK_RELATIVE("... and the work of it all: m g . v dt", work,
+                   (double)step * mpm_body_totals(&w, 0).mass *
+                       ((double)pull_down[0] * (10 + 0.5 * (double)(step * pull_down[0])) +
+                        (double)pull_down[1] * 0.5 * (double)(step * pull_down[1]) +
+                        (double)pull_down[2] * (-20 + 0.5 * (double)(step * pull_down[2]))), 1e4 * eps);
+    mpm_free(&w);
+}
+
 /* Momentum to one node of a ball. */
 static void node_push(void)
 {
@@ -1205,6 +1248,7 @@ int main(void)
         body_force(MPM_3D, basis, MPM_SIDE_WALL);
         for (k = 0; k < 6; k++) outer_force(geometry[k / 2], basis, MPM_SIDE_OPEN, k % 2);
         for (k = 0; k < 3; k++) outer_force(MPM_3D, basis, floor[k], 0);
+        mapped(basis);
         pairs(basis);
         if (basis <= MPM_GIMP) strength(basis);
     }

@@ -131,10 +131,15 @@ static void print_table(const impact *s, const impact_case *c, const impact_resu
     if (fabs(c->angle) > 0)
         printf("  tangential velocity, mean       %10.3f m/s\n", r->tangential);
     printf("  substrate drift                 %10.3f m/s\n", r->substrate_drift);
-    printf("  PBCP                            %10.3f %%    (%ld of %ld contacted points)\n", r->bond.pbcp,
-           r->bond.bonded, r->bond.contacted);
-    printf("  ABP                             %10.4f\n", r->bond.abp);
-    printf("  node pairs held by the bond     %10lld\n", (long long)w->held);
+    if (s->surfaces.surfaces > 0) {
+        printf("  bonded share of what touched    %10.3f %%\n", r->bond.pbcp);
+        printf("  meetings of markers held        %10lld\n", (long long)w->held);
+    } else {
+        printf("  PBCP                            %10.3f %%    (%ld of %ld contacted points)\n", r->bond.pbcp,
+               r->bond.bonded, r->bond.contacted);
+        printf("  ABP                             %10.4f\n", r->bond.abp);
+        printf("  node pairs held by the bond     %10lld\n", (long long)w->held);
+    }
     printf("  mean plastic strain             %10.4f\n", r->particle.plastic_strain_mean);
     printf("  mean plastic energy density     %10.2f MPa\n", r->particle.plastic_work_mean);
     printf("  flattening                      %10.4f     crater %.3f um deep\n", r->flattening, r->crater);

@@ -388,7 +388,8 @@ static inline mpm_status impact_step(impact *s)
 
 /* What came out. Velocities are along z (m/s), lengths in um; areas are those of the whole particle. */
 typedef struct impact_result {
-    mpm_bond_measure bond, particle_bond;              /* of both bodies; of the particle alone */
+    mpm_bond_measure bond, particle_bond;              /* of both bodies; of the particle alone. With contact on
+                                                          surfaces pbcp alone: bonded share of what touched, by area */
     mpm_rebound rebound;
     mpm_totals particle, substrate, all;
     double restitution;                                /* filtered rebound / impact speed */
@@ -442,6 +443,7 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
         r.meeting = mpm_surface_meets(&s->surfaces, w, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
         r.contact_area = r.meeting.touched > 0 ? r.meeting.touched : r.meeting.area;
         r.bonded_area = r.meeting.bonded;
+        r.bond.pbcp = r.particle_bond.pbcp = 100 * case_share(r.meeting.bonded, r.meeting.touched);
     }
     r.ejected_fraction = r.rebound.ejected_mass / r.particle.mass;
     energy = s->start.kinetic + s->start.internal;

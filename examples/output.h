@@ -292,8 +292,9 @@ static inline int output_surfaces(output *o, const mpm_world *w, const mpm_surfa
     ok = (value && body && line) || complain("no memory for surfaces");
     if (ok) output_markers(w, s, n, value, body, line);
     ok = ok && output_lines(o, w, n, value, body, (const int32_t(*)[2])line, lines, name);
-    if (ok && mpm_io_pvd_add(file_in(o->folder, "surface.pvd", path, sizeof path), name, (double)w->time * 1e3,
-                             &fault) < 0)
+    file_in(o->folder, "surface.pvd", path, sizeof path);
+    if (ok && ((o->frame == 0 && mpm_io_pvd_begin(path, &fault) < 0) ||
+               mpm_io_pvd_add(path, name, (double)w->time * 1e3, &fault) < 0))
         ok = report(&fault, path);
     free(value);
     free(body);

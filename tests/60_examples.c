@@ -42,6 +42,11 @@ static const char *coarse(const char *name, const char *options)
 static void surfaces(void)
 {
     const char *path = "build/tests/surface/summary.json";
+    const char *at = "build/tests/surface/surface.pvd";
+    int frames = 0;
+    CHECK_EQUAL("contact on surfaces, shortly",
+                run("--time 1 --geometry axisymmetric --contact surface --bond none --frames 3 --out "
+                    "build/tests/surface"), 0);
     CHECK_EQUAL("contact on surfaces",
                 run("--time 12 --geometry axisymmetric --functions cubic --contact surface --bond interface --springs "
                     "--scheme consistent --gap 0.1 --dt-factor 0.3 --frames 2 --out build/tests/surface"), 0);
@@ -51,6 +56,8 @@ static void surfaces(void)
     CHECK_TRUE("... dissipation of the interface", number_in(path, "interface_dissipation_J_m2") > 300);
     CHECK_TRUE("... series of outlines",
                strstr(text_of("build/tests/surface/surface.pvd"), "surface_0001.vtu") != NULL);
+    for (at = text_of(at); (at = strstr(at, "<DataSet ")) != NULL; at++) frames++;
+    CHECK_EQUAL("... begun anew", frames, 2);
     CHECK_TRUE("... with their pressure",
                strstr(text_of("build/tests/surface/surface_0001.vtu"), "contact pressure (MPa)") != NULL);
     refused("--contact surface", "--geometry axisymmetric");

@@ -195,6 +195,7 @@ static void reproduction(void)
 /* Runs are known by their options: a member without one would mix different cases up. */
 static void members(void)
 {
+    static const char *const programs[4] = {"critical_velocity", "calibrate", "two_particles", "many_particles"};
     impact_case c = impact_case_default();
     option o[IMPACT_OPTIONS];
     size_t bytes[3] = {0, 0, 0};
@@ -204,6 +205,15 @@ static void members(void)
                                                                                             : sizeof(char *);
     bytes[0] = (bytes[0] + sizeof(double) - 1) / sizeof(double) * sizeof(double); /* padded together */
     CHECK_EQUAL("every member of a case is an option", bytes[0] + bytes[1], sizeof c);
+    for (k = 0; k < 4; k++) {
+        char command[60];
+        const char *at = output;
+        int options = 0;
+        snprintf(command, sizeof command, "%s --help", programs[k]);
+        CHECK_EQUAL(command, run(command), 0);
+        while ((at = strstr(at, "\n  --")) != NULL) at++, options++;
+        CHECK_TRUE("... with its own options within the room for them", options > n && options <= IMPACT_OPTIONS);
+    }
 }
 
 /* A kept run of which a byte is missing or changed is none, whichever it is. */

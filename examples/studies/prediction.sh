@@ -11,6 +11,7 @@ half="--substrate-diameter 50 --substrate-height 25"
 value() { # file, key
     sed -n "s/^  \"$2\": \([^,]*\),*$/\1/p" "$1"
 }
+cpu_of() { sed -n 's/^  "cpu_s": \([^,]*\),*$/\1/p' "$@" | awk '{ s += $1 } END { printf "%.0f", s }'; } # kept runs
 impact() { # name, options: an impact whose summary is kept
     [ -s "$out/$1/summary.json" ] && return
     name=$1
@@ -53,7 +54,7 @@ critical() { # diameter, cell, spacing, dt-factor, substrate diameter, height
     build/critical_velocity $common --bond interface --material al --diameter "$1" --cell "$2" --spacing "$3" \
         --dt-factor "$4" --substrate-diameter "$5" --substrate-height "$6" --rule stays --stays 5 --low 700 --high 900 \
         --offsets "$positions" --quiet --out "$folder"
-    echo "$1,$(value "$folder/summary.json" critical_velocity_m_s),$(value "$folder/summary.json" lowest_m_s),$(value "$folder/summary.json" highest_m_s),$positions,$2,$3,cubic,surface,interface,$5,axisymmetric,$(value "$folder/summary.json" cpu_seconds_now)"
+    echo "$1,$(value "$folder/summary.json" critical_velocity_m_s),$(value "$folder/summary.json" lowest_m_s),$(value "$folder/summary.json" highest_m_s),$positions,$2,$3,cubic,surface,interface,$5,axisymmetric,$(cpu_of "$folder"/runs/*.json)"
 }
 {
     echo "diameter_um,critical_velocity_m_s,lowest_m_s,highest_m_s,positions,cell_um,spacing_um,basis,contact,bond,substrate_um,geometry,cpu_s"

@@ -1527,15 +1527,23 @@ MPM_API void mpm_support_mapped(const mpm_world *w, const mpm_support *s, mpm_re
         for (d = 0; d < 3; d++) v[d] += s->N[a] * mpm__sign(s, a, d) * w->node[s->slot[a]].velocity[d];
 }
 
+/* Momentum j that node a of a support takes of a force f in a step, as far as its mass and its sides let it. */
+static inline void mpm__pushed(const mpm_world *w, const mpm_support *s, int a, const mpm_real *f, mpm_real *j)
+{
+    const mpm_node *n = &w->node[s->slot[a]];
+    const int light = !(n->mass > w->desc.mass_cutoff * w->body[n->body].point_mass);
+    int d;
+    for (d = 0; d < 3; d++) j[d] = light ? 0 : s->N[a] * mpm__sign(s, a, d) * f[d] * w->dt;
+    mpm__constrain(w, n, j, NULL);
+}
+
 MPM_API void mpm_push(mpm_world *w, const mpm_support *s, const mpm_real f[3])
 {
     int a, d;
     for (a = 0; a < s->count; a++) {
         mpm_node *n = &w->node[s->slot[a]];
         mpm_real j[3];
-        if (!(n->mass > w->desc.mass_cutoff * w->body[n->body].point_mass)) continue;
-        for (d = 0; d < 3; d++) j[d] = s->N[a] * mpm__sign(s, a, d) * f[d] * w->dt;
-        mpm__constrain(w, n, j, NULL);
+        mpm__pushed(w, s, a, f, j);
         for (d = 0; d < 3; d++) {
             n->force[d] += j[d] / w->dt;
             n->reaction[d] += j[d];
@@ -1551,10 +1559,8 @@ MPM_API double mpm_support_work(const mpm_world *w, const mpm_support *s, const 
     for (a = 0; a < s->count; a++) {
         const mpm_node *n = &w->node[s->slot[a]];
         mpm_real j[3];
-        if (!(n->mass > w->desc.mass_cutoff * w->body[n->body].point_mass)) continue;
-        for (d = 0; d < 3; d++) j[d] = s->N[a] * mpm__sign(s, a, d) * f[d] * w->dt;
-        mpm__constrain(w, n, j, NULL);
-        for (d = 0; d < 3; d++) work += (double)(j[d] * mpm__mean_velocity(w, n, d));
+        mpm__pushed(w, s, a, f, j);
+        for (d = 0; d < 3 && n->mass > 0; d++) work += (double)(j[d] * mpm__mean_velocity(w, n, d));
     }
     return work;
 }

@@ -1328,10 +1328,31 @@ static inline void mpm__spray_place(mpm_spray *s, mpm_spray_ball *b)
     b->x[2] = r * (mpm_real)sin(angle);
 }
 
-static inline int mpm__spray_place_free(const mpm_spray *s, const mpm_spray_ball *b, int32_t near_count)
+/* Puts those in flight into the bins as they stand, for the places of new ones; the step bins them anew along their
+   paths. `radius_max` is then the largest in flight. */
+static inline void mpm__spray_bin_places(mpm_spray *s)
 {
-    int32_t k;
-    for (k = 0; k < near_count; k++) {
+    int32_t i;
+    s->radius_max = 0;
+    mpm__spray_grid_clear(&s->bins, 4 * s->desc.median_radius, mpm__spray_slots(s->desc.capacity));
+    for (i = 0; i < s->live; i++) {
+        s->radius_max = mpm__spray_max(s->radius_max, s->radius[i]);
+        mpm__spray_grid_add(&s->bins, s->x + 3 * i);
+    }
+}
+
+static inline int mpm__spray_place_free(mpm_spray *s, const mpm_spray_ball *b)
+{
+    const mpm_real margin = MPM_R(1.001) * (b->radius + s->radius_max); /* more than rounding can take */
+    mpm_real low[3], high[3];
+    int32_t n, k;
+    for (k = 0; k < 3; k++) {
+        low[k] = b->x[k] - margin;
+        high[k] = b->x[k] + margin;
+    }
+    n = s->desc.search == MPM_SPRAY_BINS ? mpm__spray_gather(&s->bins, low, high, s->list)
+                                         : mpm__spray_everything(&s->bins, s->list);
+    for (k = 0; k < n; k++) {
         const mpm_real *x = s->x + 3 * s->list[k];
         mpm_real d0 = x[0] - b->x[0], d1 = x[1] - b->x[1], d2 = x[2] - b->x[2];
         mpm_real reach = s->radius[s->list[k]] + b->radius;
@@ -1340,24 +1361,13 @@ static inline int mpm__spray_place_free(const mpm_spray *s, const mpm_spray_ball
     return 1;
 }
 
-/* Lists the particles in flight that a new one could overlap. */
-static inline int32_t mpm__spray_near_inlet(mpm_spray *s)
-{
-    mpm_real largest = mpm__spray_diameter_max(&s->desc) / 2;
-    int32_t i, n = 0;
-    for (i = 0; i < s->live; i++)
-        if ((mpm_real)fabs((double)s->x[3 * i]) <= s->radius[i] + largest) s->list[n++] = i;
-    return n;
-}
-
 MPM_API mpm_status mpm_spray_inject(mpm_spray *s)
 {
-    int32_t near_count;
     if (mpm__spray_ready(s) != MPM_OK) return MPM_ERR_ARGUMENT;
     if (s->desc.batch == 0) return MPM_OK;
     mpm__spray_feed(s);
     if (s->tally.pending == 0) return MPM_OK;
-    near_count = mpm__spray_near_inlet(s);
+    mpm__spray_bin_places(s);
     while (s->tally.pending > 0) {
         mpm_spray_ball b;
         mpm_status status;
@@ -1368,10 +1378,11 @@ MPM_API mpm_status mpm_spray_inject(mpm_spray *s)
         b.density = s->desc.density;
         b.v[0] = (mpm_real)s->tally.wait_speed;
         do mpm__spray_place(s, &b);
-        while (!mpm__spray_place_free(s, &b, near_count) && ++tries < MPM__SPRAY_TRIES);
+        while (!mpm__spray_place_free(s, &b) && ++tries < MPM__SPRAY_TRIES);
         if (tries == MPM__SPRAY_TRIES) return MPM_OK; /* no room: it waits */
         if ((status = mpm_spray_add(s, &b)) != MPM_OK) return status;
-        s->list[near_count++] = s->live - 1;
+        mpm__spray_grid_add(&s->bins, s->x + 3 * (s->live - 1));
+        s->radius_max = mpm__spray_max(s->radius_max, b.radius);
         s->tally.wait_radius = 0;
         s->tally.pending--;
     }

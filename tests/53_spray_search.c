@@ -149,6 +149,25 @@ static void test_spray(void)
 
 /* ---- energy in the box --------------------------------------------------------------------- */
 
+/* An inlet with more to place than it has room for: the places found are the same, and none overlaps. */
+static void test_crowded(void)
+{
+    mpm_spray_desc d = mpm_spray_desc_default();
+    mpm_spray a, b;
+    d.capacity = d.batch = 1000;
+    d.nozzle_radius = 12 * d.median_radius;
+    done("init", mpm_spray_init(&a, &d, NULL, 0));
+    d.search = MPM_SPRAY_ALL_PAIRS;
+    done("init, every pair", mpm_spray_init(&b, &d, NULL, 0));
+    done("inject", mpm_spray_inject(&a));
+    done("inject, every pair", mpm_spray_inject(&b));
+    CHECK_TRUE("a crowded inlet: the others wait", a.live > 20 && a.live < 500 && a.tally.pending == 1000 - a.live);
+    CHECK_TRUE("... bins and every pair give the same bytes", same_state(&a, &b));
+    CHECK_TRUE("... nobody overlaps", deepest(&a) < 1e2 * (double)MPM_EPSILON);
+    mpm_spray_free(&a);
+    mpm_spray_free(&b);
+}
+
 static void test_energy(void)
 {
     const mpm_real edge = MPM_R(0.005);
@@ -310,6 +329,7 @@ int main(void)
 {
     test_dense();
     test_spray();
+    test_crowded();
     test_energy();
     test_tunnels();
     test_chain();

@@ -381,6 +381,40 @@ static void test_color_bar(void)
     mpm_draw_canvas_free(&c);
 }
 
+/* A bar that reaches far beyond the canvas, or lies where a pixel is less than what a double can tell: what is seen
+   of it is what a wide canvas shows there, and it takes no longer. */
+static void test_far_bar(void)
+{
+    const double far_away[4] = {1e17, -1e17, 1e300, -1e300};
+    mpm_draw_rect where = {20, 10, 160, 20};
+    mpm_draw_canvas whole, part;
+    int i, x, y, same = 1;
+    CHECK_EQUAL("canvas", mpm_draw_canvas_init(&whole, 200, 60, NULL, 0), MPM_OK);
+    CHECK_EQUAL("its middle", mpm_draw_canvas_init(&part, 60, 60, NULL, 0), MPM_OK);
+    mpm_draw_fill(&whole, 0xffffff);
+    mpm_draw_color_bar(&whole, where, MPM_DRAW_HEAT, 0, 1, NULL);
+    mpm_draw_fill(&part, 0xffffff);
+    where.x -= 70;
+    mpm_draw_color_bar(&part, where, MPM_DRAW_HEAT, 0, 1, NULL);
+    for (y = 0; y < 20; y++)
+        for (x = 0; x < 60; x++) same = same && mpm_draw_pixel(&part, x, y) == mpm_draw_pixel(&whole, x + 70, y);
+    CHECK_TRUE("a bar cut by both sides of the canvas is the same bar", same);
+    CHECK_TRUE("... and not white", mpm_draw_pixel(&part, 30, 15) != 0xffffff);
+    mpm_draw_fill(&part, 0xffffff);
+    for (i = 0; i < 4; i++) {
+        where.x = far_away[i];
+        where.width = 1e17;
+        mpm_draw_color_bar(&part, where, MPM_DRAW_HEAT, 0, 1, NULL);
+    }
+    part.unit = 1e12;
+    where.x = 0;
+    where.width = 1e300;
+    mpm_draw_color_bar(&part, where, MPM_DRAW_HEAT, 0, 1, NULL);
+    CHECK_EQUAL("bars without end come to one", mpm_draw_pixel(&part, 0, 0), 0xffffff);
+    mpm_draw_canvas_free(&whole);
+    mpm_draw_canvas_free(&part);
+}
+
 static void test_ticks(void)
 {
     mpm_draw_tick ticks[MPM_DRAW_TICKS];
@@ -629,6 +663,7 @@ int main(void)
     test_far_ticks();
     test_odd_sizes();
     test_color_bar();
+    test_far_bar();
     test_plots();
     test_clip();
     test_ticks_room();

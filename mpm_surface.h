@@ -51,7 +51,7 @@
    CONTENTS
      describing      mpm_surfaces_default, mpm_surface_add, mpm_surface_add_chain, mpm_surface_wall_add
      the step        mpm_surface_step = the phases of mpm.h with mpm_surface_contact and mpm_surface_move
-     looking at it   mpm_surface_meets: who touches whom, and how hard
+     looking at it   mpm_surface_meets: who touches whom, and how hard; mpm_surface_adhesion of one meeting
 
    ADHESION (on request: surfaces.adhesion > 0)
      Plastic work in a layer of a physical depth l under both surfaces, from the first touch on, is the interface's
@@ -85,6 +85,7 @@
 #define mpm_surface_move mpm_surface_move_f32
 #define mpm_surface_step mpm_surface_step_f32
 #define mpm_surface_meets mpm_surface_meets_f32
+#define mpm_surface_adhesion mpm_surface_adhesion_f32
 #endif
 
 #ifdef __cplusplus
@@ -235,6 +236,9 @@ typedef struct mpm_meeting {
 
 /* Between steps, from the markers of a (one of the surfaces) and of b together. Test: 33_surface. */
 MPM_API mpm_meeting mpm_surface_meets(const mpm_surfaces *s, const mpm_world *w, int32_t a, int32_t b);
+
+/* W [energy/area], the adhesion of a marker's meeting: 0 where G is below G_c, or it is spent. Test: 33_surface. */
+MPM_API mpm_real mpm_surface_adhesion(const mpm_surfaces *s, const mpm_meet *meet);
 
 #ifdef __cplusplus
 }
@@ -1085,7 +1089,7 @@ static inline void mpm__surface_friction(const mpm_surfaces *s, const mpm_marker
 static inline void mpm__surface_adhere(const mpm_surfaces *s, const mpm_marker *m, mpm_meet *meet, mpm_real k,
                                        mpm_real dt)
 {
-    const mpm_real most = 2 * s->adhesion * (meet->dissipated / s->critical - 1) / s->reach;
+    const mpm_real most = 2 * mpm_surface_adhesion(s, meet) / s->reach;
     mpm_real open[3], length, bears;
     int d;
     memset(meet->tension, 0, sizeof meet->tension);
@@ -1277,16 +1281,23 @@ MPM_API mpm_status mpm_surface_step(mpm_surfaces *s, mpm_world *w, mpm_real dt)
 
 /* ---- looking at it ------------------------------------------------------------------------------- */
 
+MPM_API mpm_real mpm_surface_adhesion(const mpm_surfaces *s, const mpm_meet *meet)
+{
+    if (!(s->adhesion > 0) || !(meet->dissipated > s->critical) || meet->opened >= s->reach) return 0;
+    return s->adhesion * (meet->dissipated / s->critical - 1);
+}
+
 /* Adds what adhesion has made of a meeting. */
 static inline void mpm__surface_collect_adhesion(const mpm_surfaces *s, const mpm_meet *meet, double area,
                                                  mpm_meeting *r)
 {
+    const mpm_real bond = mpm_surface_adhesion(s, meet);
     if (!meet->touched) return;
     r->touched += area;
     r->dissipated += area * (double)meet->dissipated;
-    if (!(meet->dissipated > s->critical) || meet->opened >= s->reach) return;
+    if (!(bond > 0)) return;
     r->bonded += area;
-    r->adhesion += area * (double)(s->adhesion * (meet->dissipated / s->critical - 1));
+    r->adhesion += area * (double)bond;
 }
 
 /* Adds the meetings of a's markers with b (-1: any body), force on a. */

@@ -220,7 +220,26 @@ static inline int output_points(const output *o, const mpm_world *w, const mpm_i
     return ok || report(&fault, path);
 }
 
-#define OUTPUT_MARKER 8 /* values of a marker: place, velocity, pressure, gap */
+#define OUTPUT_MARKER 14 /* values of a marker: place, velocity, traction of adhesion, pressure, gap, G, W, opening */
+
+/* What a marker's meetings are together: sums of pressure and traction, of the others the one that tells most. */
+static inline void output_meets(const mpm_surfaces *s, const mpm_marker *m, mpm_real cell, mpm_real *value)
+{
+    int k, d;
+    memset(value, 0, 8 * sizeof *value);
+    value[4] = cell;
+    for (k = 0; k < MPM_SURFACE_MEETS; k++) {
+        const mpm_meet *meet = &m->meet[k];
+        const mpm_real bond = mpm_surface_adhesion(s, meet);
+        if (meet->other == MPM_SURFACE_NONE) continue;
+        for (d = 0; d < 3; d++) value[d] += meet->tension[d];
+        value[3] += meet->pressure;
+        if (meet->gap < value[4]) value[4] = meet->gap;
+        if (meet->dissipated > value[5]) value[5] = meet->dissipated;
+        if (bond > value[6]) value[6] = bond;
+        if (meet->opened > value[7]) value[7] = meet->opened;
+    }
+}
 
 /* All markers' values, one array after the other, n long each; their bodies, and the faces between them. */
 static inline void output_markers(const mpm_world *w, const mpm_surfaces *s, int32_t n, mpm_real *value, int32_t *body,
@@ -234,13 +253,13 @@ static inline void output_markers(const mpm_world *w, const mpm_surfaces *s, int
             for (k = 0; k < 2; k++) (*line)[k] = from + c->face[i][k];
         for (i = 0; i < c->markers; i++) {
             const mpm_marker *p = &c->marker[i];
-            mpm_real *to = value + from + i;
+            mpm_real one[OUTPUT_MARKER];
             for (k = 0; k < 3; k++) {
-                to[(size_t)k * (size_t)n] = p->x[k];
-                to[(size_t)(3 + k) * (size_t)n] = p->v[k];
+                one[k] = p->x[k];
+                one[3 + k] = p->v[k];
             }
-            to[6 * (size_t)n] = p->meet[0].pressure;
-            to[7 * (size_t)n] = p->meet[0].other == MPM_SURFACE_NONE ? w->desc.cell : p->meet[0].gap;
+            output_meets(s, p, w->desc.cell, one + 6);
+            for (k = 0; k < OUTPUT_MARKER; k++) value[(size_t)k * (size_t)n + (size_t)(from + i)] = one[k];
             body[from + i] = c->body;
         }
     }
@@ -251,21 +270,25 @@ static inline int output_lines(const output *o, const mpm_world *w, int32_t n, c
                                const int32_t *body, const int32_t (*line)[2], int32_t lines, const char *name)
 {
     mpm_io_vtu_desc d = mpm_io_vtu_desc_default();
-    mpm_io_field field[4];
+    mpm_io_field field[8];
     const mpm_real *at[OUTPUT_MARKER];
     char path[PATH_BYTES], note[80];
     mpm_fault fault;
     int k;
     for (k = 0; k < OUTPUT_MARKER; k++) at[k] = value + (size_t)k * (size_t)n;
     field[0] = mpm_io_vector("velocity (m/s)", at[3], at[4], at[5], 1);
-    field[1] = mpm_io_scalar("contact pressure (MPa)", at[6], 1);
-    field[2] = mpm_io_scalar("gap (um)", at[7], 1);
-    field[3] = mpm_io_int32("body", body);
+    field[1] = mpm_io_vector("traction of adhesion (MPa)", at[6], at[7], at[8], 1);
+    field[2] = mpm_io_scalar("contact pressure (MPa)", at[9], 1);
+    field[3] = mpm_io_scalar("gap (um)", at[10], 1);
+    field[4] = mpm_io_scalar("interface dissipation (J/m2)", at[11], 1);
+    field[5] = mpm_io_scalar("adhesion (J/m2)", at[12], 1);
+    field[6] = mpm_io_scalar("opening (um)", at[13], 1);
+    field[7] = mpm_io_int32("body", body);
     snprintf(note, sizeof note, "%s: lengths %s, time %s", o->name, o->length, o->time);
     d.count = (size_t)n;
     for (k = 0; k < 3; k++) d.x[k] = at[k];
     d.fields = field;
-    d.field_count = 4;
+    d.field_count = 8;
     d.lines = line;
     d.line_count = (size_t)lines;
     d.time = (double)w->time * 1e3;

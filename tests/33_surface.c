@@ -368,7 +368,7 @@ static void drawn(double work, double critical, double *energy, double *pull, do
 {
     mpm_desc d = scene_grid(1, 2, 1, 12, 0, 0, -6);
     mpm_surfaces s = mpm_surfaces_default();
-    double before;
+    double before, most;
     mpm_world w;
     int32_t k, i;
     int n;
@@ -392,6 +392,9 @@ static void drawn(double work, double critical, double *energy, double *pull, do
         if (mpm_surface_step(&s, &w, MPM_R(1e-5)) < 0) break;
     }
     *dissipated = mpm_surface_meets(&s, &w, 0, 1).dissipated;
+    for (most = 0, i = 0; i < s.surface[0].markers; i++)
+        most = fmax(most, (double)mpm_surface_adhesion(&s, &s.surface[0].marker[i].meet[0]));
+    CHECK_NEAR("... of a marker: W0 (G/G_c - 1) or none", most, fmax(0, 40 * (*dissipated / critical - 1)), 1e6 * eps);
     before = w.ledger.hold;
     *pull = 0;
     for (n = 0; n < 1500; n++) {

@@ -1083,7 +1083,8 @@ typedef struct mpm__draw_span {
 } mpm__draw_span;
 
 /* The columns of a pointed end that lie on the canvas; way: to the right (1) or to the left (-1) of x. */
-static inline void mpm__draw_bar_end(mpm_draw_canvas *c, double x, int way, double y, double thick, mpm_draw_color color)
+static inline void mpm__draw_bar_end(mpm_draw_canvas *c, double x, int way, double y, double thick,
+                                     mpm_draw_color color)
 {
     const double tip = MPM__DRAW_TIP * thick, first = way > 0 ? c->clip[0] - x : x - c->clip[2];
     const double last = way > 0 ? c->clip[2] - x : x - c->clip[0];

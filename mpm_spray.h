@@ -1205,6 +1205,25 @@ static inline int32_t mpm__spray_gather(const mpm_spray_grid *g, const mpm_real 
     return n;
 }
 
+/* Lists the items in the box low .. high and some more, as desc.search has them found. Returns their number. */
+static inline int32_t mpm__spray_list(mpm_spray *s, const mpm_spray_grid *g, const mpm_real *low, const mpm_real *high)
+{
+    return s->desc.search == MPM_SPRAY_BINS ? mpm__spray_gather(g, low, high, s->list)
+                                            : mpm__spray_everything(g, s->list);
+}
+
+/* The same for the box of `margin` around x. */
+static inline int32_t mpm__spray_list_around(mpm_spray *s, const mpm_spray_grid *g, const mpm_real *x, mpm_real margin)
+{
+    mpm_real low[3], high[3];
+    int d;
+    for (d = 0; d < 3; d++) {
+        low[d] = x[d] - margin;
+        high[d] = x[d] + margin;
+    }
+    return mpm__spray_list(s, g, low, high);
+}
+
 /* ---- setting up ---------------------------------------------------------------------------- */
 
 MPM_API mpm_status mpm_spray_init(mpm_spray *s, const mpm_spray_desc *d, void *memory, size_t bytes)
@@ -1328,13 +1347,14 @@ static inline void mpm__spray_place(mpm_spray *s, mpm_spray_ball *b)
     b->x[2] = r * (mpm_real)sin(angle);
 }
 
-/* Puts those in flight into the bins as they stand, for the places of new ones; the step bins them anew along their
-   paths. `radius_max` is then the largest in flight. */
+/* Puts those in flight into the bins as they stand, for the places of those that wait; the step bins them anew along
+   their paths. radius_max is then the largest in flight. */
 static inline void mpm__spray_bin_places(mpm_spray *s)
 {
+    const int64_t most = s->live + s->tally.pending, room = s->desc.capacity;
     int32_t i;
     s->radius_max = 0;
-    mpm__spray_grid_clear(&s->bins, 4 * s->desc.median_radius, mpm__spray_slots(s->desc.capacity));
+    mpm__spray_grid_clear(&s->bins, 4 * s->desc.median_radius, mpm__spray_slots((int32_t)(most < room ? most : room)));
     for (i = 0; i < s->live; i++) {
         s->radius_max = mpm__spray_max(s->radius_max, s->radius[i]);
         mpm__spray_grid_add(&s->bins, s->x + 3 * i);
@@ -1343,15 +1363,10 @@ static inline void mpm__spray_bin_places(mpm_spray *s)
 
 static inline int mpm__spray_place_free(mpm_spray *s, const mpm_spray_ball *b)
 {
-    const mpm_real margin = MPM_R(1.001) * (b->radius + s->radius_max); /* more than rounding can take */
-    mpm_real low[3], high[3];
-    int32_t n, k;
-    for (k = 0; k < 3; k++) {
-        low[k] = b->x[k] - margin;
-        high[k] = b->x[k] + margin;
-    }
-    n = s->desc.search == MPM_SPRAY_BINS ? mpm__spray_gather(&s->bins, low, high, s->list)
-                                         : mpm__spray_everything(&s->bins, s->list);
+    /* by more than rounding can take from it */
+    const mpm_real margin = MPM_R(1.001) * (b->radius + s->radius_max) + 8 * MPM_EPSILON * s->desc.nozzle_radius;
+    const int32_t n = mpm__spray_list_around(s, &s->bins, b->x, margin);
+    int32_t k;
     for (k = 0; k < n; k++) {
         const mpm_real *x = s->x + 3 * s->list[k];
         mpm_real d0 = x[0] - b->x[0], d1 = x[1] - b->x[1], d2 = x[2] - b->x[2];
@@ -1707,8 +1722,7 @@ static inline void mpm__spray_look_at_deposit(mpm_spray *s, int32_t i)
     mpm__spray_path_box(s, i, s->radius[i] + s->deposit_radius_max, low, high);
     for (d = 0; d < 3; d++)
         if (low[d] > s->deposit_high[d] || high[d] < s->deposit_low[d]) return;
-    n = s->desc.search == MPM_SPRAY_BINS ? mpm__spray_gather(&s->deposit_bins, low, high, s->list)
-                                         : mpm__spray_everything(&s->deposit_bins, s->list);
+    n = mpm__spray_list(s, &s->deposit_bins, low, high);
     for (k = 0; k < n; k++) mpm__spray_offer_deposit(s, i, s->list[k]);
 }
 
@@ -1835,16 +1849,10 @@ static inline void mpm__spray_deposit_enter(mpm_spray *s, int32_t host)
 /* Tells those in flight that something now stands in their way. */
 static inline void mpm__spray_warn(mpm_spray *s, int32_t host)
 {
-    mpm_real low[3], high[3], margin = s->deposit_radius[host] + s->radius_max + s->reach;
+    const mpm_real margin = s->deposit_radius[host] + s->radius_max + s->reach;
     int32_t n, k;
-    int d;
     if (s->desc.deposit == MPM_SPRAY_DEPOSIT_IGNORE) return;
-    for (d = 0; d < 3; d++) {
-        low[d] = s->deposit_x[3 * host + d] - margin;
-        high[d] = s->deposit_x[3 * host + d] + margin;
-    }
-    n = s->desc.search == MPM_SPRAY_BINS ? mpm__spray_gather(&s->bins, low, high, s->list)
-                                         : mpm__spray_everything(&s->bins, s->list);
+    n = mpm__spray_list_around(s, &s->bins, s->deposit_x + 3 * host, margin);
     for (k = 0; k < n; k++) {
         int32_t j = s->list[k];
         if (s->gone[j]) continue;

@@ -147,8 +147,6 @@ static void test_spray(void)
     mpm_spray_free(&b);
 }
 
-/* ---- energy in the box --------------------------------------------------------------------- */
-
 /* An inlet with more to place than it has room for: the places found are the same, and none overlaps. */
 static void test_crowded(void)
 {
@@ -167,6 +165,8 @@ static void test_crowded(void)
     mpm_spray_free(&a);
     mpm_spray_free(&b);
 }
+
+/* ---- energy in the box --------------------------------------------------------------------- */
 
 static void test_energy(void)
 {

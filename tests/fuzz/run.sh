@@ -10,7 +10,7 @@ if [ "$1" = --one ]; then # this script again, as one of the jobs
     clang $flags "-fsanitize=fuzzer,$check" -fno-sanitize-recover=undefined,float-cast-overflow "tests/fuzz/$t.c" \
         -o "$dir/$t" -lm >"$dir/$t.log" 2>&1 || { echo "$t: found: it does not compile, see $dir/$t.log"; exit 1; }
     mkdir -p "$dir/corpus-$t"
-    "$dir/$t" -max_total_time="$2" -max_len=1024 -timeout=60 -rss_limit_mb=1500 -print_final_stats=1 \
+    "$dir/$t" -max_total_time="$2" -max_len=1024 -timeout=20 -rss_limit_mb=1500 -print_final_stats=1 \
         -artifact_prefix="$dir/found-$t-" "$dir/corpus-$t" "$dir/first" >"$dir/$t.log" 2>&1 && status=ok || status=found
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$dir/$t.log")
     why=$(grep -m1 -oE 'broken: .*|runtime error: .*|ERROR: [A-Za-z]+: [a-zA-Z-]+' "$dir/$t.log")

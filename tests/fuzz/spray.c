@@ -37,7 +37,7 @@ static void change_desc(fuzz *f, mpm_spray_desc *d, mpm_spray_plane *plane)
     if (d->contacts_max > 100) d->contacts_max = 100;
     FUZZ_CHOICE(f, d->search);
     d->capacity = fuzz_int(f, d->capacity);
-    if (d->capacity > 3000) d->capacity = 3000; /* all in one place are as many pairs as it squared */
+    if (d->capacity > 1000) d->capacity = 1000; /* all in one place are as many pairs as it squared */
     fuzz_reals(f, &d->target_radius, 3);
     if (fuzz_byte(f) < 128) return;
     memset(plane, 0, sizeof *plane);

@@ -754,7 +754,6 @@ MPM_API mpm_draw_color mpm_draw_series_color(int number)
 #define MPM__DRAW_PAD 16.0         /* around a figure */
 #define MPM__DRAW_TITLE 10.5       /* cap heights */
 #define MPM__DRAW_LABEL 9.0
-#define MPM__DRAW_TIP 0.8          /* length of the pointed end of a bar, in its thickness */
 #define MPM__DRAW_NUMBER 8.0
 #define MPM__DRAW_HEADING 24.0     /* height of the line above the frame */
 #define MPM__DRAW_BAR 60.0         /* height of colour bar, numbers and label below the frame */
@@ -1032,7 +1031,8 @@ static inline int mpm__draw_place(const mpm_draw_canvas *c, mpm_draw_rect where,
 {
     double u = c->unit, wide = a->high[0] - a->low[0], high = a->high[1] - a->low[1];
     double spare_x, spare_y, scale;
-    if (!mpm__draw_has_room(c, where) || !(wide > 0 && wide < 1e300 && high > 0 && high < 1e300)) return 0;
+    if (!mpm__draw_has_room(c, where)) return 0;
+    if (!(wide > 1e-300 && wide < 1e300 && high > 1e-300 && high < 1e300)) return 0; /* pixels for it are finite */
     a->left = where.x + MPM__DRAW_PAD * u;
     a->right = where.x + where.width - MPM__DRAW_PAD * u;
     a->top = where.y + (MPM__DRAW_PAD + mpm__draw_top_room(f)) * u;
@@ -1082,41 +1082,24 @@ typedef struct mpm__draw_span {
     int below, above;
 } mpm__draw_span;
 
-/* The columns of a pointed end that lie on the canvas; way: to the right (1) or to the left (-1) of x. */
-static inline void mpm__draw_bar_end(mpm_draw_canvas *c, double x, int way, double y, double thick,
-                                     mpm_draw_color color)
-{
-    const double tip = MPM__DRAW_TIP * thick, first = way > 0 ? c->clip[0] - x : x - c->clip[2];
-    const double last = way > 0 ? c->clip[2] - x : x - c->clip[0];
-    double k;
-    if (!(fabs(first) < 1e9)) return; /* nowhere near it */
-    for (k = first > 0 ? floor(first) : 0; k < tip && k < last; k++) {
-        const double half = 0.5 * thick * (1 - k / tip);
-        mpm_draw_rectangle(c, way > 0 ? x + k : x - k - 1, y + 0.5 * thick - half, 1, 2 * half, color);
-    }
-}
-
-/* The columns between both ends that lie on the canvas. */
-static inline void mpm__draw_bar_middle(mpm_draw_canvas *c, double left, double right, double y, double thick,
-                                        mpm_draw_map map)
-{
-    double x = left < c->clip[0] ? left + floor(c->clip[0] - left) : left;
-    for (; x < right && x < c->clip[2]; x++)
-        mpm_draw_rectangle(c, x, y, 1, thick, mpm_draw_map_color(map, (x + 0.5 - left) / (right - left)));
-}
-
 /* A bar from x1 to x2 below y, with pointed ends where values lie outside the range. */
 static inline void mpm__draw_bar(mpm_draw_canvas *c, double x1, double x2, double y, mpm_draw_map map,
                                  const mpm__draw_span *s, const char *label)
 {
     mpm_draw_tick ticks[MPM_DRAW_TICKS];
-    double u = c->unit, size = MPM__DRAW_NUMBER * u, thick = floor(10 * u + 0.5), x, tip = MPM__DRAW_TIP * thick;
+    double u = c->unit, size = MPM__DRAW_NUMBER * u, thick = floor(10 * u + 0.5), x, tip = 0.8 * thick;
     double left = floor(x1) + (s->below ? tip : 0), right = floor(x2) - (s->above ? tip : 0);
     int i, n = mpm_draw_ticks(s->low, s->high, 0, mpm__draw_steps((right - left) / (54 * u)), ticks);
     if (!(right > left)) return;
-    mpm__draw_bar_middle(c, left, right, y, thick, map);
-    if (s->below) mpm__draw_bar_end(c, left, -1, y, thick, mpm_draw_map_color(map, 0));
-    if (s->above) mpm__draw_bar_end(c, right, 1, y, thick, mpm_draw_map_color(map, 1));
+    for (x = left; x < right; x++)
+        mpm_draw_rectangle(c, x, y, 1, thick, mpm_draw_map_color(map, (x + 0.5 - left) / (right - left)));
+    for (x = 0; x < tip; x++) {
+        double half = 0.5 * thick * (1 - x / tip);
+        if (s->below)
+            mpm_draw_rectangle(c, left - x - 1, y + 0.5 * thick - half, 1, 2 * half, mpm_draw_map_color(map, 0));
+        if (s->above)
+            mpm_draw_rectangle(c, right + x, y + 0.5 * thick - half, 1, 2 * half, mpm_draw_map_color(map, 1));
+    }
     for (i = 0; i < n; i++) {
         x = left + (right - left) * (ticks[i].at - s->low) / (s->high - s->low);
         x = x < left + 0.5 ? left + 0.5 : x > right - 0.5 ? right - 0.5 : x;

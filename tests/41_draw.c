@@ -381,41 +381,6 @@ static void test_color_bar(void)
     mpm_draw_canvas_free(&c);
 }
 
-/* A bar that reaches far beyond the canvas, or lies where a pixel is less than what a double can tell: what is seen
-   of it is what a wide canvas shows there, and it takes no longer. */
-static void test_far_bar(void)
-{
-    const double far_away[4] = {1e17, -1e17, 1e300, -1e300};
-    mpm_draw_rect where = {20, 10, 160, 20};
-    mpm_draw_canvas whole, part;
-    int i, x, y, same = 1;
-    CHECK_EQUAL("canvas", mpm_draw_canvas_init(&whole, 200, 60, NULL, 0), MPM_OK);
-    CHECK_EQUAL("its middle", mpm_draw_canvas_init(&part, 60, 60, NULL, 0), MPM_OK);
-    mpm_draw_fill(&whole, 0xffffff);
-    mpm_draw_color_bar(&whole, where, MPM_DRAW_HEAT, 0, 1, NULL);
-    mpm_draw_fill(&part, 0xffffff);
-    where.x -= 70;
-    mpm_draw_color_bar(&part, where, MPM_DRAW_HEAT, 0, 1, NULL);
-    for (y = 0; y < 20; y++)
-        for (x = 0; x < 60; x++) same = same && mpm_draw_pixel(&part, x, y) == mpm_draw_pixel(&whole, x + 70, y);
-    CHECK_TRUE("a bar cut by both sides of the canvas is the same bar", same);
-    CHECK_TRUE("... and not white", mpm_draw_pixel(&part, 30, 15) != 0xffffff);
-    mpm_draw_fill(&part, 0xffffff);
-    for (i = 0; i < 4; i++) {
-        where.x = far_away[i];
-        where.width = 1e17;
-        mpm_draw_color_bar(&part, where, MPM_DRAW_HEAT, 0, 1, NULL);
-    }
-    CHECK_EQUAL("bars far away leave it white", darkness(&part, 0, 0, 60, 60), 0);
-    where.x = 0;
-    where.width = 1e300;
-    mpm_draw_color_bar(&part, where, MPM_DRAW_HEAT, 0, 1, NULL);
-    CHECK_EQUAL("a bar without end shows its lower one", mpm_draw_pixel(&part, 30, 15),
-                mpm_draw_map_color(MPM_DRAW_HEAT, 0));
-    mpm_draw_canvas_free(&whole);
-    mpm_draw_canvas_free(&part);
-}
-
 static void test_ticks(void)
 {
     mpm_draw_tick ticks[MPM_DRAW_TICKS];
@@ -565,6 +530,29 @@ static void test_ticks_room(void)
 }
 
 /* Figures draw where the caller lets them, and leave that as it was. */
+/* A window so small that its pixels were infinitely many (the bar below it then never ended) has no place. */
+static void test_tiny_window(void)
+{
+    const mpm_real x[2] = {0, 1};
+    mpm_draw_scatter_desc s = mpm_draw_scatter_desc_default();
+    mpm_draw_canvas c;
+    mpm_fault f;
+    int k;
+    s.count = 2;
+    s.x = s.y = s.value = x;
+    s.equal = 1;
+    s.label = "value";
+    CHECK_EQUAL("canvas", mpm_draw_canvas_init(&c, 160, 120, NULL, 0), MPM_OK);
+    for (k = 0; k < 2; k++) {
+        s.window[1] = s.window[3] = k ? 1e-299 : 1e-309;
+        mpm_draw_fill(&c, 0xffffff);
+        CHECK_EQUAL("a window of 1e-309, of 1e-299", mpm_draw_scatter(&c, mpm_draw_tile(&c, 1, 1, 0), &s, &f),
+                    k ? MPM_OK : MPM_ERR_ARGUMENT);
+        CHECK_EQUAL("... is drawn or not", darkness(&c, 0, 0, 160, 120) > 0, k);
+    }
+    mpm_draw_canvas_free(&c);
+}
+
 static void test_clip(void)
 {
     static const int box[4] = {90, 40, 150, 120};
@@ -664,9 +652,9 @@ int main(void)
     test_far_ticks();
     test_odd_sizes();
     test_color_bar();
-    test_far_bar();
     test_plots();
     test_clip();
+    test_tiny_window();
     test_ticks_room();
     return check_end();
 }

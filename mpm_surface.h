@@ -213,7 +213,8 @@ MPM_API mpm_status mpm_surface_contact(mpm_surfaces *s, mpm_world *w);
 
 /* Moves the markers as their bodies' matter moves, with MUSL's velocity (with that of P(k+1) the penalty would take
    energy: light nodes at a surface are kicked in every step), books the work of contact (in ledger.contact: what it
-   took, the penalty's stored part included) and halves long faces. Between mpm_musl and mpm_move. MPM_ERR_MEMORY.
+   took, the penalty's stored part included) and halves long faces. Between mpm_musl and mpm_move. MPM_ERR_NAN: the
+   place of a marker, its number in fault.index; MPM_ERR_MEMORY.
    Test: 33_surface. */
 MPM_API mpm_status mpm_surface_move(mpm_surfaces *s, mpm_world *w);
 
@@ -393,7 +394,8 @@ static inline mpm_real mpm__surface_ring(const mpm_world *w, mpm_real r)
 /* Where side d of the grid lies, and whether x is on it. */
 static inline mpm_real mpm__surface_side(const mpm_world *w, int d)
 {
-    return w->desc.origin[d / 2] + (d & 1 ? (mpm_real)w->desc.cells[d / 2] * w->desc.cell : 0);
+    const int axis = d / 2;
+    return w->desc.origin[axis] + (d & 1 ? (mpm_real)w->desc.cells[axis] * w->desc.cell : 0);
 }
 
 static inline int mpm__surface_on_side(const mpm_world *w, int d, const mpm_real *x)
@@ -847,9 +849,11 @@ static inline uint32_t mpm__surface_bucket(const mpm_surfaces *s, int32_t ix, in
     return ((uint32_t)ix * 73856093u ^ (uint32_t)iz * 83492791u) & (uint32_t)(s->buckets - 1);
 }
 
+/* The cell of x in direction d; what lies far off the grid is in its last, on either side. */
 static inline int32_t mpm__surface_cell(const mpm_world *w, const mpm_real *x, int d)
 {
-    return (int32_t)((x[d] - w->desc.origin[d]) / w->desc.cell + 8);
+    const mpm_real cell = (x[d] - w->desc.origin[d]) / w->desc.cell + 8, far = MPM_R(1e9);
+    return cell > far ? (int32_t)far : cell > -far ? (int32_t)cell : -(int32_t)far;
 }
 
 /* Puts the faces of a surface, by the cells of their middles, into buckets. */
@@ -1244,9 +1248,12 @@ MPM_API mpm_status mpm_surface_move(mpm_surfaces *s, mpm_world *w)
                 w->ledger.hold -= pulled;
                 mpm_support_mapped(w, &at, m->v);
             }
-            for (d = 0; d < 3; d++) m->x[d] += w->dt * m->v[d];
+            for (d = 0; d < 3 && st == MPM_OK; d++) {
+                m->x[d] += w->dt * m->v[d];
+                if (!mpm_finite(m->x[d])) st = mpm_fail(&s->fault, MPM_ERR_NAN, "place of a marker", m->x[d], i);
+            }
         }
-        st = mpm__surface_refine(s, w, c);
+        if (st == MPM_OK) st = mpm__surface_refine(s, w, c);
         mpm__surface_measure(w, c);
     }
     if (s->adhesion > 0 && s->steps % MPM__LAYER_STEPS == 0) {

@@ -89,6 +89,12 @@ static void refusals(void)
     s.stiffness = 0;
     CHECK_EQUAL("no stiffness", mpm_surfaces_check(&s, &s.fault), MPM_ERR_ARGUMENT);
     CHECK_TRUE("... is named", !strcmp(s.fault.field, "stiffness"));
+    s.stiffness = 5;
+    s.surface[0].marker[0].x[0] = MPM_R(1e30);
+    CHECK_EQUAL("a marker far off", mpm_surface_step(&s, &w, MPM_R(1e-6)), MPM_OK);
+    s.surface[0].marker[2].v[2] = s.surface[0].marker[2].x[2] = (mpm_real)NAN;
+    CHECK_EQUAL("a marker that is nowhere", mpm_surface_step(&s, &w, MPM_R(1e-6)), MPM_ERR_NAN);
+    CHECK_EQUAL("... is number 2", w.fault.index, 2);
     mpm_surfaces_free(&s);
     CHECK_EQUAL("given back", s.surfaces, 0);
     w.body[0].desc.wave_p = 0;

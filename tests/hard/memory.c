@@ -1,5 +1,5 @@
 /* memory - every allocation fails in turn: setting up, bodies, clouds, rules, user fields, growth during steps, a
-   picture, its file, a spray. A failure is a status, what was there goes on, nothing is lost. One line at the end.
+   picture, its file, surfaces, a spray. A failure is a status, what was there goes on, nothing is lost. One line at the end.
    SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +14,7 @@ static void *hard_malloc(size_t n) { return ++count == failing ? NULL : malloc(n
 #include "mpm_draw.h"
 #include "mpm_io.h"
 #include "mpm_spray.h"
+#include "mpm_surface.h"
 
 static long wrong;
 
@@ -74,6 +75,34 @@ static void world(void)
     mpm_free(&w);
 }
 
+static void surfaces(void)
+{
+    mpm_desc d = mpm_desc_default();
+    mpm_body_desc b = mpm_body_desc_default();
+    mpm_surfaces s = mpm_surfaces_default();
+    mpm_world w;
+    int32_t k, i, before;
+    d.geometry = MPM_PLANE_STRAIN;
+    d.basis = MPM_CUBIC;
+    d.cell = 1;
+    d.cells[0] = d.cells[2] = 16;
+    b.spacing = MPM_R(0.5);
+    b.density = b.wave_p = b.wave_s = 1;
+    s.adhesion = s.critical = s.depth = s.reach = 1;
+    TRY(mpm_init(&w, &d, NULL, 0));
+    for (k = 0; k < 2; k++) {
+        b.shape = k ? mpm_box(4, 0, 2, 12, 1, 8) : mpm_sphere(8, 0, 10, 2);
+        TRY(mpm_body_add(&w, &b));
+        TRY(mpm_surface_add(&s, &w, k));
+    }
+    for (i = 0; i < w.points.count; i++) w.points.v[0][i] = (w.points.x[0][i] - 8) / 2; /* faces stretch: they are halved */
+    before = s.surface[1].markers;
+    for (i = 0; i < 20; i++) TRY(mpm_surface_step(&s, &w, MPM_R(0.1)));
+    want(s.surface[1].markers > before, "halved");
+    mpm_surfaces_free(&s);
+    mpm_free(&w);
+}
+
 static void spray(void)
 {
     mpm_spray_desc d = mpm_spray_desc_default();
@@ -90,6 +119,7 @@ int main(void)
     for (failing = 1;; failing++) {
         count = 0;
         world();
+        surfaces();
         spray();
         if (count < failing) break;
     }

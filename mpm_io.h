@@ -277,15 +277,16 @@ typedef struct mpm_io_vtu_desc {
     double time;                /* stored as TimeValue */
     int float32;                /* 1: reals as Float32, half the size; 0: as mpm_real */
     const char *note;           /* kept in a comment: what made this file; or NULL */
-    size_t line_count;          /* lines that join points: outlines */
-    const int32_t (*lines)[2];  /* numbers of their points; NULL: the points stand alone, a vertex each */
+    size_t cell_count;          /* lines or triangles that join points: surfaces */
+    int cell_points;            /* of each: 2 or 3 */
+    const int32_t *cells;       /* numbers of their points, cell by cell; NULL: the points stand alone, a vertex each */
 } mpm_io_vtu_desc;
 
 /* No points, no fields, scale 1, time 0. Test: 40_io "vtu". */
 MPM_API mpm_io_vtu_desc mpm_io_vtu_desc_default(void);
 
-/* Writes a VTK XML UnstructuredGrid (.vtu) of one vertex per point, or of lines between them, data appended raw.
-   MPM_ERR_ARGUMENT for a field without data, name or components, or a line to a point that is not there;
+/* Writes a VTK XML UnstructuredGrid (.vtu) of one vertex per point, or of lines or triangles between them, data
+   appended raw. MPM_ERR_ARGUMENT for a field without data, name or components, or a cell of a point that is not there;
    MPM_ERR_FILE. Test: 40_io "vtu". */
 MPM_API mpm_status mpm_io_vtu(const char *path, const mpm_io_vtu_desc *d, mpm_fault *fault);
 
@@ -1025,10 +1026,12 @@ static inline mpm_status mpm__io_vtu_check(const mpm_io_vtu_desc *d, mpm_fault *
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_io_vtu_desc_default)", (mpm_real)d->mark, -1);
     if (d->count > 2147483647u)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "count", (mpm_real)d->count, -1);
-    for (l = 0; l < d->line_count && d->lines; l++)
-        for (k = 0; k < 2; k++)
-            if (d->lines[l][k] < 0 || (size_t)d->lines[l][k] >= d->count)
-                return mpm_fail(fault, MPM_ERR_ARGUMENT, "point of line", (mpm_real)d->lines[l][k], (int64_t)l);
+    if (d->cells && (d->cell_points < 2 || d->cell_points > 3))
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "cell_points", (mpm_real)d->cell_points, -1);
+    for (l = 0; d->cells && l < d->cell_count * (size_t)d->cell_points; l++)
+        if (d->cells[l] < 0 || (size_t)d->cells[l] >= d->count)
+            return mpm_fail(fault, MPM_ERR_ARGUMENT, "point of cell", (mpm_real)d->cells[l],
+                            (int64_t)(l / (size_t)d->cell_points));
     if (d->field_count < 0 || (d->field_count > 0 && !d->fields))
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "field_count", (mpm_real)d->field_count, -1);
     for (i = 0; i < d->field_count; i++) {
@@ -1056,7 +1059,7 @@ static inline int mpm__io_little_endian(void)
 static inline void mpm__io_vtu_head(mpm_io_file *f, const mpm_io_vtu_desc *d, size_t real)
 {
     const char *type = real == 4 ? "Float32" : "Float64";
-    uint64_t n = d->count, cells = d->lines ? d->line_count : d->count, offset = 0;
+    uint64_t n = d->count, cells = d->cells ? d->cell_count : d->count, offset = 0;
     int i;
     mpm_io_put(f, "<?xml version=\"1.0\"?>\n<!-- mpm.h " MPM_VERSION " ");
     if (d->note) mpm__io_put_xml(f, d->note);
@@ -1073,7 +1076,7 @@ static inline void mpm__io_vtu_head(mpm_io_file *f, const mpm_io_vtu_desc *d, si
     mpm_io_put(f, "\">\n      <Points>\n");
     mpm__io_data_tag(f, type, "Points", 3, 3 * n * real, &offset);
     mpm_io_put(f, "      </Points>\n      <Cells>\n");
-    mpm__io_data_tag(f, "Int32", "connectivity", 1, 4 * cells * (d->lines ? 2 : 1), &offset);
+    mpm__io_data_tag(f, "Int32", "connectivity", 1, 4 * cells * (d->cells ? (uint64_t)d->cell_points : 1), &offset);
     mpm__io_data_tag(f, "Int32", "offsets", 1, 4 * cells, &offset);
     mpm__io_data_tag(f, "UInt8", "types", 1, cells, &offset);
     mpm_io_put(f, "      </Cells>\n      <PointData>\n");
@@ -1086,27 +1089,26 @@ static inline void mpm__io_vtu_head(mpm_io_file *f, const mpm_io_vtu_desc *d, si
                    "  <AppendedData encoding=\"raw\">\n_");
 }
 
-/* Connectivity, offsets and types: vertices 0 .. n - 1, or lines. */
+/* Connectivity, offsets and types: vertices 0 .. n - 1, or lines or triangles. */
 static inline void mpm__io_vtu_cells(mpm_io_file *f, const mpm_io_vtu_desc *d)
 {
-    const size_t cells = d->lines ? d->line_count : d->count;
-    const int32_t ends = d->lines ? 2 : 1;
+    static const int type[4] = {0, 1, 3, 5}; /* VTK_VERTEX, VTK_LINE, VTK_TRIANGLE */
+    const size_t cells = d->cells ? d->cell_count : d->count;
+    const int32_t ends = d->cells ? d->cell_points : 1;
     uint64_t bytes = 4 * (uint64_t)cells * (uint64_t)ends;
     int32_t number;
     size_t i;
-    int k;
     mpm_io_put_bytes(f, &bytes, sizeof bytes);
-    for (i = 0; i < cells; i++)
-        for (k = 0; k < ends; k++) {
-            number = d->lines ? d->lines[i][k] : (int32_t)i;
-            mpm_io_put_bytes(f, &number, sizeof number);
-        }
+    for (i = 0; i < cells * (size_t)ends; i++) {
+        number = d->cells ? d->cells[i] : (int32_t)i;
+        mpm_io_put_bytes(f, &number, sizeof number);
+    }
     bytes = 4 * (uint64_t)cells;
     mpm_io_put_bytes(f, &bytes, sizeof bytes);
     for (number = ends, i = 0; i < cells; i++, number += ends) mpm_io_put_bytes(f, &number, sizeof number);
     bytes = cells;
     mpm_io_put_bytes(f, &bytes, sizeof bytes);
-    for (i = 0; i < cells; i++) fputc(d->lines ? 3 : 1, f->stream); /* VTK_LINE, VTK_VERTEX */
+    for (i = 0; i < cells; i++) fputc(type[ends], f->stream);
 }
 
 /* The appended data, in the order of the tags. */

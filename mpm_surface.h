@@ -4,7 +4,7 @@
    DO THIS
      #define MPM_IMPLEMENTATION in ONE file, then include mpm.h and mpm_surface.h there; "mpm_surface.h" alone
      everywhere else. Add the bodies to a world, then mpm_surface_add for each that shall touch others, and step with
-     mpm_surface_step. Link with -lm. Two dimensions: plane strain and axisymmetry.
+     mpm_surface_step. Link with -lm.
 
    A COMPLETE PROGRAM (two elastic bars meet head-on at 10 m/s each; prints what the upper one leaves with, in m/s)
        #define MPM_IMPLEMENTATION
@@ -41,28 +41,29 @@
        }
 
    HOW IT WORKS
-     Each body carries its outline: a chain of massless markers, moved by the body's own grid (mpm_surface_move). A
-     marker finds the nearest place of another body's chain. Where the gap to it is negative, a pressure in proportion
-     to it, and to the speed at which it closes, acts on both chains, from these on their own grids
+     Each body carries its surface: massless markers, joined to a chain in two dimensions and by triangles in three,
+     moved by the body's own grid (mpm_surface_move). A marker finds the nearest place of another body's surface. Where
+     the gap to it is negative, a pressure in proportion to it, and to the speed at which it closes, acts on both, from
+     these on their own grids
      (mpm_surface_contact). Nothing is compared between two bodies' grids, so that next to nothing hangs on where their
      nodes lie. Contact at nodes takes no part: use splines (desc.basis = MPM_CUBIC), whose fields are smooth at a
      surface.
 
    CONTENTS
-     describing      mpm_surfaces_default, mpm_surface_add, mpm_surface_add_chain, mpm_surface_wall_add
+     describing      mpm_surfaces_default, mpm_surface_add, mpm_surface_add_chain, mpm_surface_add_triangles,
+                     mpm_surface_wall_add
      the step        mpm_surface_step = the phases of mpm.h with mpm_surface_contact and mpm_surface_move
      looking at it   mpm_surface_meets: who touches whom, and how hard; mpm_surface_adhesion of one meeting
 
    ADHESION (on request: surfaces.adhesion > 0)
      Plastic work in a layer of a physical depth l under both surfaces, from the first touch on, is the interface's
      dissipation G of each marker's meeting:
-       dG = l (d<w_p> of this body + d<w_p> of the other),  <w_p>: mean over the points of depth < l that were within l
-       along the surface at first, weight (1 - q)^2 (1 + 2 q)                                                    (S4)
+       dG = l (d<w_p> of this body + d<w_p> of the other),  <w_p>: mean over the points of depth < l whose feet on the
+       surface were q l < l from the marker at first, weight (1 - q)^2 (1 + 2 q)                                 (S4)
      Where it exceeds G_c it leaves an adhesion of W = W0 (G/G_c - 1) per area: a traction 2 W/delta_c at most, spent
      when drawn open by delta_c (S5). It belongs to the two bodies that met, and costs what it takes: ledger.hold.
 
-   WHAT IT DOES NOT DO: surfaces of three-dimensional bodies; contact of a body with itself; more than two other bodies
-   at a marker; checkpoints of surfaces.
+   WHAT IT DOES NOT DO: contact of a body with itself; more than two other bodies at a marker; checkpoints of surfaces.
 
    Sources: penalty between a surface's points and another's faces, taken both ways, and friction by a spring that
    slips: Wriggers, Computational Contact Mechanics, Springer (2006). */
@@ -80,6 +81,7 @@
 #define mpm_surfaces_free mpm_surfaces_free_f32
 #define mpm_surface_add mpm_surface_add_f32
 #define mpm_surface_add_chain mpm_surface_add_chain_f32
+#define mpm_surface_add_triangles mpm_surface_add_triangles_f32
 #define mpm_surface_wall_add mpm_surface_wall_add_f32
 #define mpm_surface_contact mpm_surface_contact_f32
 #define mpm_surface_move mpm_surface_move_f32
@@ -98,8 +100,8 @@ extern "C" {
 /* A marker's meeting with another body or a wall. */
 typedef struct mpm_meet {
     int32_t other;        /* its surface's number; -1 - k: wall k; MPM_SURFACE_NONE: nobody */
-    int32_t face;         /* nearest face of it, and where on that: (1 - u) first + u second marker */
-    mpm_real u;
+    int32_t face;         /* nearest face of it, and where on that: the shares of its markers */
+    mpm_real share[3];
     mpm_real gap, rate;   /* from the other's surface, along its normal, > 0: apart [length]; its rate */
     mpm_real normal[3];   /* unit, out of the other */
     mpm_real pressure;    /* >= 0 */
@@ -118,36 +120,38 @@ typedef struct mpm_marker {
     mpm_real x[3], v[3];  /* position, and velocity of its own body's grid there */
     mpm_real normal[3];   /* unit, out of the body */
     mpm_real area;        /* what of the surface it stands for, now [length^2; per depth in plane strain] */
-    mpm_real along;       /* its place on the surface as it was at first: length of the way to it */
+    int32_t parent[2];    /* the markers between which it was put when they had grown apart; -1: one of the first */
+    mpm_real worked;      /* what the layer's plastic work per volume has grown by since the look before [stress] */
     mpm_real force[3];    /* contact with all other bodies in this step */
     mpm_real pull[3];     /* adhesion to them */
     mpm_real wall[3];     /* from walls */
     mpm_meet meet[MPM_SURFACE_MEETS];
 } mpm_marker;
 
-/* The layer under a surface whose plastic work makes adhesion: at stations, the first places of the markers, means over
-   the points near them, in the body as it was at first. */
+/* The layer under a surface whose plastic work makes adhesion: for each of its first markers a mean over the points
+   near it, in the body as it was at first. */
 typedef struct mpm_layer {
-    int32_t stations, points; /* 0: none */
+    int32_t markers, points;  /* 0: none */
     int32_t first_id;         /* of the body's points */
-    mpm_real round;           /* length of a closed surface; 0: an open one */
-    mpm_real *along;          /* per station: length of the way to it, rising */
-    mpm_real *mean, *change;  /* plastic work per volume, and what it has grown by since the look before [stress] */
-    int32_t *begin;           /* per station, and one more: its entries */
+    mpm_real *mean;           /* per marker: plastic work per volume at the last look [stress] */
+    int32_t *begin;           /* per marker, and one more: its entries */
     int32_t *point;           /* per entry: number of the point, less first_id */
     mpm_real *weight;         /* of it; they sum to 1 */
     int32_t *where;           /* per point: its index now, -1: retired */
 } mpm_layer;
 
-/* The surface of one body: markers joined by faces. The body lies to the left of a face's way from its first to its
-   second marker, with x to the right and z up. */
+/* The surface of one body: markers joined by faces. In two dimensions a face is the line from its first to its second
+   marker, the body to the left, with x to the right and z up. In three it is a triangle, its markers counter-clockwise
+   for who looks at the body from outside. */
 typedef struct mpm_surface {
     int32_t body;
+    int corners;           /* of a face: 2 or 3 */
     int32_t markers, faces;
     int32_t marker_capacity, face_capacity;
     mpm_marker *marker;
-    int32_t (*face)[2];
-    int32_t (*around)[2]; /* per marker: the faces that it ends and begins, -1: none */
+    int32_t (*face)[3];
+    int32_t (*beside)[3];  /* per face: those that share its corner k, or in three dimensions its edge from corner k to
+                              the next; -1: none */
     mpm_layer layer;
 } mpm_surface;
 
@@ -177,8 +181,9 @@ typedef struct mpm_surfaces {
     mpm_surface_wall wall[MPM_SURFACE_WALLS];
     int walls;
     int64_t steps;        /* since the first */
-    int32_t *bucket, *next; /* search: first face of a cell, next face of the same */
-    int32_t buckets, bucket_room, nexts;
+    int32_t *bucket, *next; /* search: first face or marker of a cell, next one of the same */
+    int32_t *near;          /* what was found close to a place */
+    int32_t buckets, bucket_room, nexts, near_room;
     mpm_fault fault;
 } mpm_surfaces;
 
@@ -191,16 +196,23 @@ MPM_API mpm_status mpm_surfaces_check(const mpm_surfaces *s, mpm_fault *fault);
 /* Gives the memory back; s is then as from mpm_surfaces_default but for its parameters. Test: 33_surface. */
 MPM_API void mpm_surfaces_free(mpm_surfaces *s);
 
-/* The outline of a body's shape (ellipsoid, cylinder or box), with a marker every half spacing; what lies behind a
-   symmetry plane is cut off. Before the body has moved. MPM_ERR_ARGUMENT: no such body, one of another shape, three
-   dimensions, or the body has a surface; MPM_ERR_MEMORY. Test: 33_surface. */
+/* The surface of a body's shape, with a marker every half spacing, in three dimensions every quarter of a cell; of a
+   shape of your own through where `inside` changes, to a thousandth of that. What lies behind a symmetry plane is cut
+   off, and faces with dampers have none: the body goes on there. Before the body has moved. MPM_ERR_ARGUMENT: no such
+   body, one without a shape, or it has a surface; MPM_ERR_MEMORY. Test: 33_surface, 34_triangles. */
 MPM_API mpm_status mpm_surface_add(mpm_surfaces *s, const mpm_world *w, int32_t body);
 
 /* A surface of the caller's: n places x, z [length], joined in order, the last with the first if closed, the body to
-   the left. MPM_ERR_ARGUMENT / NAN: as above, fewer than two places, or a place that is not finite, its number in
-   fault.index; MPM_ERR_MEMORY. Test: 33_surface. */
+   the left; in two dimensions. MPM_ERR_ARGUMENT / NAN: as above, fewer than two places, or a place that is not finite,
+   its number in fault.index; MPM_ERR_MEMORY. Test: 33_surface. */
 MPM_API mpm_status mpm_surface_add_chain(mpm_surfaces *s, const mpm_world *w, int32_t body, int32_t n,
                                          const mpm_real *x, const mpm_real *z, int closed);
+
+/* The same in three dimensions: n places x[0], x[1], x[2] [length], and triangles of their numbers, counter-clockwise
+   from outside. MPM_ERR_ARGUMENT also: a number that is none, its triangle in fault.index. Test: 34_triangles. */
+MPM_API mpm_status mpm_surface_add_triangles(mpm_surfaces *s, const mpm_world *w, int32_t body, int32_t n,
+                                             const mpm_real *const x[3], int32_t triangles,
+                                             const int32_t (*triangle)[3]);
 
 /* A rigid half space: below a plane through `point` with the normal out of it. MPM_ERR_ARGUMENT: the normal has no
    length; MPM_ERR_FULL: there are MPM_SURFACE_WALLS. Test: 33_surface. */
@@ -301,8 +313,8 @@ static inline mpm_status mpm__surface_drop(mpm_surface *c, mpm_status st)
 {
     mpm__surface_release(c->marker);
     mpm__surface_release(c->face);
-    mpm__surface_release(c->around);
-    mpm__surface_release(c->layer.along);
+    mpm__surface_release(c->beside);
+    mpm__surface_release(c->layer.mean);
     mpm__surface_release(c->layer.begin);
     mpm__surface_release(c->layer.point);
     mpm__surface_release(c->layer.weight);
@@ -316,9 +328,10 @@ MPM_API void mpm_surfaces_free(mpm_surfaces *s)
     mpm__surface_release(s->surface);
     mpm__surface_release(s->bucket);
     mpm__surface_release(s->next);
+    mpm__surface_release(s->near);
     s->surface = NULL;
-    s->bucket = s->next = NULL;
-    s->surfaces = s->capacity = s->buckets = s->bucket_room = s->nexts = 0;
+    s->bucket = s->next = s->near = NULL;
+    s->surfaces = s->capacity = s->buckets = s->bucket_room = s->nexts = s->near_room = 0;
     s->walls = 0;
     s->steps = 0;
 }
@@ -329,7 +342,7 @@ static inline void *mpm__surface_room(void *old, int32_t *capacity, int32_t used
 {
     const int32_t room = n + n / 2 + 16;
     void *more;
-    if (n <= *capacity) return old;
+    if (old && n <= *capacity) return old;
     more = MPM_MALLOC((size_t)room * size);
     if (!more) return NULL;
     if (used > 0) memcpy(more, old, (size_t)used * size);
@@ -343,49 +356,96 @@ static inline mpm_status mpm__surface_full(mpm_fault *f, int32_t n)
     return mpm_fail(f, MPM_ERR_MEMORY, "room for markers of a surface", (mpm_real)n, -1);
 }
 
-/* Room in one surface; there are as many `around` as markers. */
+/* Room in one surface; there are as many `beside` as faces. */
 static inline mpm_status mpm__surface_grow(mpm_surface *c, int32_t markers, int32_t faces, mpm_fault *f)
 {
-    int32_t capacity = c->marker_capacity;
-    void *p = mpm__surface_room(c->marker, &capacity, c->markers, markers, sizeof c->marker[0]);
+    int32_t capacity = c->face_capacity;
+    void *p = mpm__surface_room(c->marker, &c->marker_capacity, c->markers, markers, sizeof c->marker[0]);
     if (!p) return mpm__surface_full(f, markers);
     c->marker = (mpm_marker *)p;
-    p = mpm__surface_room(c->around, &c->marker_capacity, c->markers, markers, sizeof c->around[0]);
-    if (!p) return mpm__surface_full(f, markers);
-    c->around = (int32_t(*)[2])p;
-    p = mpm__surface_room(c->face, &c->face_capacity, c->faces, faces, sizeof c->face[0]);
+    p = mpm__surface_room(c->face, &capacity, c->faces, faces, sizeof c->face[0]);
     if (!p) return mpm__surface_full(f, faces);
-    c->face = (int32_t(*)[2])p;
+    c->face = (int32_t(*)[3])p;
+    p = mpm__surface_room(c->beside, &c->face_capacity, c->faces, faces, sizeof c->beside[0]);
+    if (!p) return mpm__surface_full(f, faces);
+    c->beside = (int32_t(*)[3])p;
     return MPM_OK;
 }
 
-/* ---- making a chain ------------------------------------------------------------------------------ */
+/* Room for n buckets, a power of two that is returned, and m items in them; 0 if there is none to be had. All empty. */
+static inline int32_t mpm__surface_buckets(mpm_surfaces *s, int32_t n, int32_t m)
+{
+    int32_t i, buckets = 64;
+    void *p;
+    while (buckets < n) buckets *= 2;
+    p = mpm__surface_room(s->bucket, &s->bucket_room, 0, buckets, sizeof s->bucket[0]);
+    if (p) s->bucket = (int32_t *)p;
+    if (p) p = mpm__surface_room(s->next, &s->nexts, 0, m, sizeof s->next[0]);
+    if (!p) return 0;
+    s->next = (int32_t *)p;
+    for (i = 0; i < buckets; i++) s->bucket[i] = -1;
+    s->buckets = buckets;
+    p = mpm__surface_room(s->near, &s->near_room, 0, m, sizeof s->near[0]);
+    if (!p) return 0;
+    s->near = (int32_t *)p;
+    return buckets;
+}
 
-/* Marker i of n, and the face from it to the next. */
-static inline void mpm__surface_put(mpm_surface *c, int32_t i, int32_t n, mpm_real x, mpm_real z)
+/* ---- faces and markers --------------------------------------------------------------------------- */
+
+static inline mpm_real mpm__surface_dot(const mpm_real *a, const mpm_real *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline mpm_real mpm__surface_length(const mpm_real *a) { return mpm_sqrt(mpm__surface_dot(a, a)); }
+
+static inline void mpm__surface_cross(const mpm_real *a, const mpm_real *b, mpm_real *c)
+{
+    c[0] = a[1] * b[2] - a[2] * b[1];
+    c[1] = a[2] * b[0] - a[0] * b[2];
+    c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline void mpm__surface_way(const mpm_real *from, const mpm_real *to, mpm_real *way)
+{
+    int d;
+    for (d = 0; d < 3; d++) way[d] = to[d] - from[d];
+}
+
+/* The area of a face times its normal out of the body; of a line the area is its length, for a depth of 1 along -y. */
+static inline void mpm__surface_vector(const mpm_surface *c, int32_t face, mpm_real *n)
+{
+    const int32_t *f = c->face[face];
+    mpm_real a[3], b[3] = {0, -2, 0};
+    int d;
+    mpm__surface_way(c->marker[f[0]].x, c->marker[f[1]].x, a);
+    if (c->corners == 3) mpm__surface_way(c->marker[f[0]].x, c->marker[f[2]].x, b);
+    mpm__surface_cross(a, b, n);
+    for (d = 0; d < 3; d++) n[d] /= 2;
+}
+
+/* Marker i, at x, meeting nobody. */
+static inline void mpm__surface_put(mpm_surface *c, int32_t i, mpm_real x, mpm_real y, mpm_real z)
 {
     mpm_marker *m = &c->marker[i];
     int k;
     memset(m, 0, sizeof *m);
     m->x[0] = x;
+    m->x[1] = y;
     m->x[2] = z;
+    m->parent[0] = m->parent[1] = -1;
     for (k = 0; k < MPM_SURFACE_MEETS; k++) m->meet[k].other = MPM_SURFACE_NONE;
-    c->face[i][0] = i;
-    c->face[i][1] = i + 1 < n ? i + 1 : 0;
 }
 
-/* Which faces end and begin at each marker. */
-static inline void mpm__surface_join(mpm_surface *c)
+static inline void mpm__surface_face(mpm_surface *c, int32_t face, int32_t a, int32_t b, int32_t third)
 {
-    int32_t i;
-    for (i = 0; i < c->markers; i++) c->around[i][0] = c->around[i][1] = -1;
-    for (i = 0; i < c->faces; i++) {
-        c->around[c->face[i][0]][1] = i;
-        c->around[c->face[i][1]][0] = i;
-    }
+    c->face[face][0] = a;
+    c->face[face][1] = b;
+    c->face[face][2] = third;
 }
 
-/* What a ring at radius r is longer than a marker; 1 in plane strain. */
+/* What a ring at radius r is longer than a marker; 1 in plane strain and in three dimensions. */
 static inline mpm_real mpm__surface_ring(const mpm_world *w, mpm_real r)
 {
     return w->desc.geometry == MPM_AXISYMMETRIC ? 2 * MPM_PI * r : 1;
@@ -398,15 +458,18 @@ static inline mpm_real mpm__surface_side(const mpm_world *w, int d)
     return w->desc.origin[axis] + (d & 1 ? (mpm_real)w->desc.cells[axis] * w->desc.cell : 0);
 }
 
-static inline int mpm__surface_on_side(const mpm_world *w, int d, const mpm_real *x)
+static inline mpm_real mpm__surface_hair(const mpm_world *w) { return MPM_R(1e-5) * w->desc.cell; }
+
+/* Whether side d mirrors: in two dimensions there is no y. */
+static inline int mpm__surface_mirrors(const mpm_world *w, int d)
 {
-    const mpm_real from = x[d / 2] - mpm__surface_side(w, d), hair = MPM_R(1e-5) * w->desc.cell;
-    return from < hair && from > -hair;
+    return w->desc.side[d] == MPM_SIDE_SYMMETRY && (d / 2 != 1 || w->desc.geometry == MPM_3D);
 }
 
 /* Area and normal of all markers, from the faces as they lie: linear along each. */
 static inline void mpm__surface_measure(const mpm_world *w, mpm_surface *c)
 {
+    const int n = c->corners;
     int32_t i;
     int k, d;
     for (i = 0; i < c->markers; i++) {
@@ -414,35 +477,533 @@ static inline void mpm__surface_measure(const mpm_world *w, mpm_surface *c)
         for (d = 0; d < 3; d++) c->marker[i].normal[d] = 0;
     }
     for (i = 0; i < c->faces; i++) {
-        mpm_marker *a = &c->marker[c->face[i][0]], *b = &c->marker[c->face[i][1]];
-        const mpm_real tx = b->x[0] - a->x[0], tz = b->x[2] - a->x[2], length = mpm_sqrt(tx * tx + tz * tz);
-        const mpm_real ra = mpm__surface_ring(w, a->x[0]), rb = mpm__surface_ring(w, b->x[0]);
-        a->area += length * (2 * ra + rb) / 6;
-        b->area += length * (ra + 2 * rb) / 6;
-        for (k = 0; k < 2; k++) {
-            c->marker[c->face[i][k]].normal[0] += tz;
-            c->marker[c->face[i][k]].normal[2] -= tx;
+        mpm_real vector[3], ring[3], sum = 0, part;
+        mpm__surface_vector(c, i, vector);
+        for (k = 0; k < n; k++) sum += ring[k] = mpm__surface_ring(w, c->marker[c->face[i][k]].x[0]);
+        part = mpm__surface_length(vector) / (mpm_real)(n * (n + 1));
+        for (k = 0; k < n; k++) {
+            mpm_marker *m = &c->marker[c->face[i][k]];
+            m->area += part * (ring[k] + sum);
+            for (d = 0; d < 3; d++) m->normal[d] += vector[d];
         }
     }
     for (i = 0; i < c->markers; i++) {
         mpm_marker *m = &c->marker[i];
         mpm_real length;
-        for (d = 0; d < 6; d++) /* on a mirror the other half takes that component away */
-            if (w->desc.side[d] == MPM_SIDE_SYMMETRY && mpm__surface_on_side(w, d, m->x)) m->normal[d / 2] = 0;
-        length = mpm_sqrt(m->normal[0] * m->normal[0] + m->normal[2] * m->normal[2]);
+        for (d = 0; d < 6; d++) { /* on a mirror the other half takes that component away */
+            const mpm_real from = m->x[d / 2] - mpm__surface_side(w, d), hair = mpm__surface_hair(w);
+            if (mpm__surface_mirrors(w, d) && from < hair && from > -hair) m->normal[d / 2] = 0;
+        }
+        length = mpm__surface_length(m->normal);
         for (d = 0; d < 3; d++) m->normal[d] = length > 0 ? m->normal[d] / length : 0;
     }
 }
 
-/* A new surface of body `body`, still empty, in `s`. */
+/* The place on a line nearest to x: u of the way from a to b, and the distance squared. */
+static inline mpm_real mpm__surface_on_line(const mpm_real *a, const mpm_real *b, const mpm_real *x, mpm_real *u)
+{
+    mpm_real t[3], off[3], square;
+    int d;
+    mpm__surface_way(a, b, t);
+    mpm__surface_way(a, x, off);
+    square = mpm__surface_dot(t, t);
+    *u = square > 0 ? mpm__surface_dot(off, t) / square : 0;
+    *u = *u < 0 ? 0 : *u > 1 ? 1 : *u;
+    for (d = 0; d < 3; d++) off[d] -= *u * t[d];
+    return mpm__surface_dot(off, off);
+}
+
+/* The place on a triangle nearest to x: its corners' shares, and the distance squared. Beside the triangle it is on an
+   edge that x lies beyond. */
+static inline mpm_real mpm__surface_on_triangle(const mpm_real *const corner[3], const mpm_real *x, mpm_real *share)
+{
+    mpm_real b[3], c[3], off[3], n[3], across[3], square, nearest = -1, inside[3], u;
+    int k;
+    mpm__surface_way(corner[0], corner[1], b);
+    mpm__surface_way(corner[0], corner[2], c);
+    mpm__surface_way(corner[0], x, off);
+    mpm__surface_cross(b, c, n);
+    square = mpm__surface_dot(n, n);
+    mpm__surface_cross(off, c, across);
+    inside[1] = square > 0 ? mpm__surface_dot(across, n) / square : -1;
+    mpm__surface_cross(b, off, across);
+    inside[2] = square > 0 ? mpm__surface_dot(across, n) / square : -1;
+    inside[0] = 1 - inside[1] - inside[2];
+    if (inside[0] >= 0 && inside[1] >= 0 && inside[2] >= 0) {
+        const mpm_real height = mpm__surface_dot(off, n);
+        for (k = 0; k < 3; k++) share[k] = inside[k];
+        return height * height / square;
+    }
+    for (k = 0; k < 3; k++) {
+        const int from = (k + 1) % 3, to = (k + 2) % 3; /* the edge across from corner k */
+        if (inside[k] >= 0) continue;
+        square = mpm__surface_on_line(corner[from], corner[to], x, &u);
+        if (nearest >= 0 && !(square < nearest)) continue;
+        nearest = square;
+        share[k] = 0;
+        share[from] = 1 - u;
+        share[to] = u;
+    }
+    return nearest;
+}
+
+/* The place on a face nearest to x: its markers' shares, and the distance squared. */
+static inline mpm_real mpm__surface_nearest(const mpm_surface *c, int32_t face, const mpm_real *x, mpm_real *share)
+{
+    const int32_t *f = c->face[face];
+    const mpm_real *corner[3];
+    mpm_real square;
+    int k;
+    for (k = 0; k < c->corners; k++) corner[k] = c->marker[f[k]].x;
+    if (c->corners == 3) return mpm__surface_on_triangle(corner, x, share);
+    square = mpm__surface_on_line(corner[0], corner[1], x, &share[1]);
+    share[0] = 1 - share[1];
+    share[2] = 0;
+    return square;
+}
+
+/* ---- faces beside faces, and their halving ---------------------------------------------------------- */
+
+/* Drops markers that no face has, the others in their order, and finds which faces lie beside which. */
+static inline mpm_status mpm__surface_join(mpm_surfaces *s, mpm_surface *c)
+{
+    const int n = c->corners;
+    int32_t i, g, item, markers = 0;
+    int k;
+    if (!mpm__surface_buckets(s, c->markers, 3 * c->faces)) return mpm__surface_full(&s->fault, c->faces);
+    for (i = 0; i < c->faces; i++)
+        for (k = 0; k < n; k++) s->bucket[c->face[i][k]] = 0;
+    for (i = 0; i < c->markers; i++)
+        if (s->bucket[i] == 0) {
+            s->bucket[i] = markers;
+            c->marker[markers++] = c->marker[i];
+        }
+    c->markers = markers;
+    for (i = 0; i < c->faces; i++)
+        for (k = 0; k < n; k++) c->face[i][k] = s->bucket[c->face[i][k]];
+    for (i = 0; i < s->buckets; i++) s->bucket[i] = -1; /* from here on a marker's list of corners: 3 face + k */
+    for (item = 0; item < 3 * c->faces; item++) {
+        c->beside[item / 3][item % 3] = -1;
+        if (item % 3 >= n) continue;
+        s->next[item] = s->bucket[c->face[item / 3][item % 3]];
+        s->bucket[c->face[item / 3][item % 3]] = item;
+    }
+    for (i = 0; i < c->faces; i++)
+        for (k = 0; k < n; k++) {
+            const int32_t a = c->face[i][k], b = n == 3 ? c->face[i][(k + 1) % 3] : a;
+            for (item = s->bucket[b]; item >= 0; item = s->next[item]) {
+                g = item / 3;
+                if (n == 3 ? c->face[g][(item + 1) % 3] == a : g != i && item % 3 != k) c->beside[i][k] = g;
+            }
+        }
+    return MPM_OK;
+}
+
+/* A new marker between two, u of the way from a to b: it moves as they do, and meets what the first meets. */
+static inline int32_t mpm__surface_between(mpm_surface *c, int32_t a, int32_t b, mpm_real u)
+{
+    const mpm_marker *p = &c->marker[a], *q = &c->marker[b];
+    mpm_marker *m = &c->marker[c->markers];
+    int d;
+    *m = *p;
+    for (d = 0; d < 3; d++) {
+        m->x[d] = (1 - u) * p->x[d] + u * q->x[d];
+        m->v[d] = (1 - u) * p->v[d] + u * q->v[d];
+        m->force[d] = m->pull[d] = m->wall[d] = 0;
+    }
+    m->parent[0] = a;
+    m->parent[1] = b;
+    return c->markers++;
+}
+
+/* Edge of a triangle that goes from marker `from` to `to`; -1: none does. */
+static inline int mpm__surface_edge(const mpm_surface *c, int32_t face, int32_t from, int32_t to)
+{
+    int k;
+    for (k = 0; k < 3 && face >= 0; k++)
+        if (c->face[face][k] == from && c->face[face][(k + 1) % 3] == to) return k;
+    return -1;
+}
+
+/* Cuts a triangle from marker m, on its edge k, to the corner across: it keeps what lies at corner k. Returns the
+   number of the rest: m, corner k + 1, the one across. */
+static inline int32_t mpm__surface_cleave(mpm_surface *c, int32_t face, int k, int32_t m)
+{
+    const int next = (k + 1) % 3, across = (k + 2) % 3;
+    const int32_t n = c->faces++, beyond = c->beside[face][next];
+    const int edge = mpm__surface_edge(c, beyond, c->face[face][across], c->face[face][next]);
+    mpm__surface_face(c, n, m, c->face[face][next], c->face[face][across]);
+    c->beside[n][0] = -1;
+    c->beside[n][1] = beyond;
+    c->beside[n][2] = face;
+    if (edge >= 0) c->beside[beyond][edge] = n;
+    c->face[face][next] = m;
+    c->beside[face][next] = n;
+    return n;
+}
+
+/* Cuts a line at marker m: it keeps what lies at its first. */
+static inline void mpm__surface_cleave_line(mpm_surface *c, int32_t face, int32_t m)
+{
+    const int32_t n = c->faces++, after = c->beside[face][1];
+    mpm__surface_face(c, n, m, c->face[face][1], m);
+    c->beside[n][0] = face;
+    c->beside[n][1] = after;
+    c->beside[n][2] = -1;
+    if (after >= 0) c->beside[after][0] = n;
+    c->face[face][1] = m;
+    c->beside[face][1] = n;
+}
+
+/* Puts a marker u of the way along edge k of a face, and cuts there the faces that share the edge. */
+static inline mpm_status mpm__surface_split(mpm_surfaces *s, mpm_surface *c, int32_t face, int k, mpm_real u)
+{
+    const mpm_status st = mpm__surface_grow(c, c->markers + 1, c->faces + 2, &s->fault);
+    int32_t a, b, m, n, other, rest;
+    int edge;
+    if (st != MPM_OK) return st;
+    a = c->face[face][k];
+    b = c->face[face][(k + 1) % c->corners];
+    m = mpm__surface_between(c, a, b, u);
+    if (c->corners == 2) {
+        mpm__surface_cleave_line(c, face, m);
+        return MPM_OK;
+    }
+    other = c->beside[face][k];
+    edge = mpm__surface_edge(c, other, b, a);
+    n = mpm__surface_cleave(c, face, k, m);
+    c->beside[face][k] = -1;
+    if (edge < 0) return MPM_OK;
+    rest = mpm__surface_cleave(c, other, edge, m);
+    c->beside[face][k] = rest;
+    c->beside[rest][0] = face;
+    c->beside[n][0] = other;
+    c->beside[other][edge] = n;
+    return MPM_OK;
+}
+
+/* Takes off what lies behind side d of the grid: faces that cross it are cut there. */
+static inline mpm_status mpm__surface_cut(mpm_surfaces *s, const mpm_world *w, mpm_surface *c, int d)
+{
+    const int axis = d / 2, edges = c->corners == 3 ? 3 : 1;
+    const mpm_real inward = d & 1 ? MPM_R(-1.0) : MPM_R(1.0), plane = mpm__surface_side(w, d);
+    const mpm_real hair = mpm__surface_hair(w);
+    int32_t i, n = 0;
+    int k;
+    for (i = 0; i < c->faces; i++)
+        for (k = 0; k < edges; k++) {
+            const int32_t a = c->face[i][k], b = c->face[i][(k + 1) % c->corners];
+            const mpm_real from = c->marker[a].x[axis] - plane, to = c->marker[b].x[axis] - plane;
+            mpm_status st;
+            if (!((from < -hair && to > hair) || (from > hair && to < -hair))) continue;
+            if ((st = mpm__surface_split(s, c, i, k, from / (from - to))) != MPM_OK) return st;
+            c->marker[c->markers - 1].x[axis] = plane;
+            k = -1; /* its edges are others now */
+        }
+    for (i = 0; i < c->faces; i++) {
+        int ahead = 0;
+        for (k = 0; k < c->corners; k++) ahead += inward * (c->marker[c->face[i][k]].x[axis] - plane) >= hair;
+        if (ahead) mpm__surface_face(c, n++, c->face[i][0], c->face[i][1], c->face[i][2]);
+    }
+    c->faces = n;
+    return mpm__surface_join(s, c);
+}
+
+/* ---- neighbours ------------------------------------------------------------------------------------ */
+
+/* Where a face (its middle) or a marker lies. */
+static inline void mpm__surface_place(const mpm_surface *c, int markers, int32_t i, mpm_real *x)
+{
+    int k, d;
+    for (d = 0; d < 3; d++) {
+        x[d] = markers ? c->marker[i].x[d] : 0;
+        for (k = 0; k < c->corners && !markers; k++) x[d] += c->marker[c->face[i][k]].x[d] / (mpm_real)c->corners;
+    }
+}
+
+/* The cell of x; what lies far off the grid is in its last, on either side. */
+static inline void mpm__surface_cell(const mpm_world *w, const mpm_real *x, int32_t *cell)
+{
+    const mpm_real far = MPM_R(1e9);
+    int d;
+    for (d = 0; d < 3; d++) {
+        const mpm_real at = (x[d] - w->desc.origin[d]) / w->desc.cell + 8;
+        cell[d] = at > far ? (int32_t)far : at > -far ? (int32_t)at : -(int32_t)far;
+    }
+}
+
+static inline uint32_t mpm__surface_bucket(const mpm_surfaces *s, int32_t ix, int32_t iy, int32_t iz)
+{
+    return ((uint32_t)ix * 73856093u ^ (uint32_t)iy * 19349663u ^ (uint32_t)iz * 83492791u) &
+           (uint32_t)(s->buckets - 1);
+}
+
+/* Puts the faces of a surface, or its markers, into buckets by the cells that they lie in. */
+static inline mpm_status mpm__surface_sort(mpm_surfaces *s, const mpm_world *w, const mpm_surface *c, int markers)
+{
+    const int32_t n = markers ? c->markers : c->faces;
+    int32_t i, cell[3];
+    if (!mpm__surface_buckets(s, n, n)) return mpm__surface_full(&s->fault, n);
+    for (i = n - 1; i >= 0; i--) {
+        mpm_real x[3];
+        uint32_t k;
+        mpm__surface_place(c, markers, i, x);
+        mpm__surface_cell(w, x, cell);
+        k = mpm__surface_bucket(s, cell[0], cell[1], cell[2]);
+        s->next[i] = s->bucket[k];
+        s->bucket[k] = i;
+    }
+    return MPM_OK;
+}
+
+/* Those of a surface that lie within `range` cells of the cell of x: numbers to s->near, each once. From the buckets of
+   these cells, or, where the cells are more than the faces or markers, by looking at all of those. */
+static inline int32_t mpm__surface_around(mpm_surfaces *s, const mpm_world *w, const mpm_surface *c, int markers,
+                                          const mpm_real *x, int32_t range)
+{
+    const int32_t deep = c->corners == 3 ? range : 0, all = markers ? c->markers : c->faces;
+    const int64_t wide = 2 * (int64_t)range + 1, cells = wide * wide * (2 * (int64_t)deep + 1);
+    int32_t at[3], cell[3], ix, iy, iz, i, n = 0;
+    mpm_real place[3];
+    mpm__surface_cell(w, x, at);
+    for (i = 0; i < all && cells > all; i++) {
+        mpm__surface_place(c, markers, i, place);
+        mpm__surface_cell(w, place, cell);
+        for (ix = 0; ix < 3 && cell[ix] >= at[ix] - range && cell[ix] <= at[ix] + range; ix++) continue;
+        if (ix == 3) s->near[n++] = i;
+    }
+    if (cells > all) return n;
+    for (iz = at[2] - range; iz <= at[2] + range; iz++)
+        for (iy = at[1] - deep; iy <= at[1] + deep; iy++)
+            for (ix = at[0] - range; ix <= at[0] + range; ix++)
+                for (i = s->bucket[mpm__surface_bucket(s, ix, iy, iz)]; i >= 0; i = s->next[i]) {
+                    mpm__surface_place(c, markers, i, place);
+                    mpm__surface_cell(w, place, cell);
+                    if (cell[0] == ix && cell[1] == iy && cell[2] == iz) s->near[n++] = i;
+                }
+    return n;
+}
+
+/* ---- the layer under a surface ------------------------------------------------------------------- */
+
+/* A point's foot on the surface, if it lies in the layer. */
+typedef struct mpm__foot {
+    int within;
+    mpm_real x[3], normal[3]; /* of the face there: its area times its normal */
+} mpm__foot;
+
+/* How many cells away a face can be whose nearest place is within the layer's depth. */
+static inline int32_t mpm__layer_range(const mpm_surfaces *s, const mpm_world *w)
+{
+    const mpm_real cells = s->depth / w->desc.cell;
+    return cells < 100 ? (int32_t)(cells + MPM_R(1.5)) : 101;
+}
+
+static inline mpm__foot mpm__layer_foot(mpm_surfaces *s, const mpm_world *w, const mpm_surface *c, const mpm_real *x)
+{
+    const int32_t n = mpm__surface_around(s, w, c, 0, x, mpm__layer_range(s, w));
+    mpm_real nearest = s->depth * s->depth, share[3], square;
+    mpm__foot foot;
+    int32_t i;
+    int k, d;
+    memset(&foot, 0, sizeof foot);
+    for (i = 0; i < n; i++) {
+        square = mpm__surface_nearest(c, s->near[i], x, share);
+        if (!(square < nearest)) continue;
+        nearest = square;
+        foot.within = 1;
+        mpm__surface_vector(c, s->near[i], foot.normal);
+        for (d = 0; d < 3; d++)
+            for (k = 0, foot.x[d] = 0; k < c->corners; k++)
+                foot.x[d] += share[k] * c->marker[c->face[s->near[i]][k]].x[d];
+    }
+    return foot;
+}
+
+/* Weight of a point whose foot is q depths from a marker: (1 - q)^2 (1 + 2 q). Not through a thin body: the foot's face
+   may not look away from the marker's. */
+static inline mpm_real mpm__layer_weight(const mpm_marker *m, const mpm__foot *foot, mpm_real depth)
+{
+    mpm_real way[3], q;
+    mpm__surface_way(m->x, foot->x, way);
+    q = mpm__surface_length(way) / depth;
+    if (!(q < 1) || mpm__surface_dot(m->normal, foot->normal) < mpm__surface_length(foot->normal) / -2) return 0;
+    return (1 - q) * (1 - q) * (1 + 2 * q);
+}
+
+/* Visits the markers near one foot, of point `number` with mass: counts their entries, or writes them. */
+static inline void mpm__layer_near(mpm_surfaces *s, const mpm_world *w, mpm_surface *c, const mpm__foot *foot,
+                                   int32_t number, mpm_real mass, int write)
+{
+    const int32_t n = mpm__surface_around(s, w, c, 1, foot->x, mpm__layer_range(s, w));
+    int32_t i;
+    for (i = 0; i < n; i++) {
+        const mpm_real part = mpm__layer_weight(&c->marker[s->near[i]], foot, s->depth);
+        int32_t *end = &c->layer.begin[s->near[i] + 1];
+        if (!(part > 0)) continue;
+        if (write) {
+            c->layer.point[*end] = number;
+            c->layer.weight[*end] = mass * part;
+        }
+        ++*end;
+    }
+}
+
+/* Visits them for all points of the layer, and for their images in the mirrors close by. */
+static inline void mpm__layer_visit(mpm_surfaces *s, const mpm_world *w, mpm_surface *c, const mpm__foot *foot,
+                                    int write)
+{
+    const mpm_body *b = &w->body[c->body];
+    int32_t i;
+    int image, d;
+    for (i = 0; i < b->count; i++)
+        for (image = 0; image < 64 && foot[i].within; image++) { /* bit d: mirrored at side d */
+            mpm__foot at = foot[i];
+            for (d = 0; d < 6; d++) {
+                const mpm_real plane = mpm__surface_side(w, d);
+                if (!(image >> d & 1)) continue;
+                if (!mpm__surface_mirrors(w, d) || mpm_fabs(at.x[d / 2] - plane) > s->depth) break;
+                at.x[d / 2] = 2 * plane - at.x[d / 2];
+                at.normal[d / 2] = -at.normal[d / 2];
+            }
+            if (d == 6)
+                mpm__layer_near(s, w, c, &at, w->points.id[b->first + i] - c->layer.first_id,
+                                w->points.mass[b->first + i], write);
+        }
+}
+
+/* From counts behind each marker to where its entries begin: begin[k + 1] is where those of k are put next, and in the
+   end where they end. */
+static inline size_t mpm__layer_begin(mpm_layer *y)
+{
+    size_t sum = 0;
+    int32_t k;
+    for (k = 0; k < y->markers; k++) {
+        const int32_t n = y->begin[k + 1];
+        y->begin[k + 1] = (int32_t)sum;
+        sum += (size_t)n;
+    }
+    return sum;
+}
+
+/* The points' feet on the surface, and their numbers. */
+static inline mpm_status mpm__layer_feet(mpm_surfaces *s, const mpm_world *w, mpm_surface *c, mpm__foot *foot)
+{
+    const mpm_body *b = &w->body[c->body];
+    const mpm_status st = mpm__surface_sort(s, w, c, 0);
+    int32_t i;
+    int d;
+    c->layer.points = b->count;
+    c->layer.first_id = b->count > 0 ? w->points.id[b->first] : 0;
+    for (i = 0; i < b->count && st == MPM_OK; i++) {
+        mpm_real x[3];
+        if (w->points.id[b->first + i] < c->layer.first_id) c->layer.first_id = w->points.id[b->first + i];
+        for (d = 0; d < 3; d++) x[d] = w->points.x[d][b->first + i];
+        foot[i] = mpm__layer_foot(s, w, c, x);
+    }
+    return st;
+}
+
+/* The entries of all markers, from the feet. */
+static inline mpm_status mpm__layer_fill(mpm_surfaces *s, const mpm_world *w, mpm_surface *c, const mpm__foot *foot)
+{
+    mpm_layer *y = &c->layer;
+    size_t entries;
+    int32_t k, i;
+    mpm_status st = mpm__surface_sort(s, w, c, 1);
+    if (st != MPM_OK) return st;
+    mpm__layer_visit(s, w, c, foot, 0);
+    entries = mpm__layer_begin(y);
+    y->point = (int32_t *)MPM_MALLOC((entries + (size_t)y->points + 1) * sizeof *y->point);
+    y->weight = (mpm_real *)MPM_MALLOC((entries + 1) * sizeof *y->weight);
+    if (!y->point || !y->weight) return mpm__surface_full(&s->fault, (int32_t)entries);
+    y->where = y->point + entries;
+    mpm__layer_visit(s, w, c, foot, 1);
+    for (k = 0; k < y->markers; k++) {
+        mpm_real sum = 0;
+        for (i = y->begin[k]; i < y->begin[k + 1]; i++) sum += y->weight[i];
+        for (i = y->begin[k]; i < y->begin[k + 1]; i++) y->weight[i] /= sum;
+    }
+    return MPM_OK;
+}
+
+/* The layer of a new surface, from the points as they lie. */
+static inline mpm_status mpm__layer_make(mpm_surfaces *s, const mpm_world *w, mpm_surface *c)
+{
+    const size_t n = (size_t)c->markers, points = (size_t)w->body[c->body].count;
+    mpm_layer *y = &c->layer;
+    mpm__foot *foot = (mpm__foot *)MPM_MALLOC((points + 1) * sizeof *foot);
+    mpm_status st = foot ? MPM_OK : mpm__surface_full(&s->fault, (int32_t)points);
+    y->mean = (mpm_real *)MPM_MALLOC(n * sizeof *y->mean);
+    y->begin = (int32_t *)MPM_MALLOC((n + 1) * sizeof *y->begin);
+    if (!y->mean || !y->begin) st = mpm__surface_full(&s->fault, c->markers);
+    if (st == MPM_OK) {
+        y->markers = c->markers;
+        memset(y->mean, 0, n * sizeof *y->mean);
+        memset(y->begin, 0, (n + 1) * sizeof *y->begin);
+        st = mpm__layer_feet(s, w, c, foot);
+    }
+    if (st == MPM_OK) st = mpm__layer_fill(s, w, c, foot);
+    mpm__surface_release(foot);
+    return st;
+}
+
+/* The means of a layer now, and at every marker what they have grown by since they were taken last: at one that was put
+   between two others, the mean of theirs. */
+static inline void mpm__layer_update(const mpm_world *w, mpm_surface *c)
+{
+    const mpm_body *b = &w->body[c->body];
+    mpm_layer *y = &c->layer;
+    int32_t i, k;
+    for (i = 0; i < y->points; i++) y->where[i] = -1;
+    for (i = b->first; i < b->first + b->active; i++) {
+        const int32_t number = w->points.id[i] - y->first_id;
+        if (number >= 0 && number < y->points) y->where[number] = i;
+    }
+    for (k = 0; k < c->markers && y->markers > 0; k++) {
+        mpm_marker *m = &c->marker[k];
+        mpm_real sum = 0;
+        if (k >= y->markers) {
+            m->worked = (c->marker[m->parent[0]].worked + c->marker[m->parent[1]].worked) / 2;
+            continue;
+        }
+        for (i = y->begin[k]; i < y->begin[k + 1]; i++)
+            if (y->where[y->point[i]] >= 0) sum += y->weight[i] * w->points.plastic_work[y->where[y->point[i]]];
+        m->worked = sum - y->mean[k];
+        y->mean[k] = sum;
+    }
+}
+
+/* G of all meetings that have touched: dG = l (d<w_p> of this body + d<w_p> of the other where it is met). */
+static inline void mpm__layer_grow(mpm_surfaces *s)
+{
+    int32_t a, i;
+    int k, j;
+    for (a = 0; a < s->surfaces; a++)
+        for (i = 0; i < s->surface[a].markers; i++)
+            for (k = 0; k < MPM_SURFACE_MEETS; k++) {
+                const mpm_marker *m = &s->surface[a].marker[i];
+                mpm_meet *meet = &s->surface[a].marker[i].meet[k];
+                const mpm_surface *c;
+                mpm_real worked = m->worked;
+                if (meet->other < 0 || !meet->touched) continue;
+                c = &s->surface[meet->other];
+                for (j = 0; j < c->corners; j++)
+                    worked += meet->share[j] * c->marker[c->face[meet->face][j]].worked;
+                meet->dissipated += s->depth * worked;
+            }
+}
+
+/* ---- making a surface whole ------------------------------------------------------------------------ */
+
+/* A new surface of body `body`, still empty, in `s`, of the world's geometry. */
 static inline mpm_surface *mpm__surface_new(mpm_surfaces *s, const mpm_world *w, int32_t body, mpm_status *st)
 {
     mpm_fault *f = &s->fault;
+    mpm_surface *c;
     void *more;
     int32_t i;
     *st = mpm_surfaces_check(s, f);
-    if (*st == MPM_OK)
-        *st = mpm_want(w->desc.geometry != MPM_3D, f, "geometry (surfaces are of two dimensions)", 0, -1);
     if (*st == MPM_OK) *st = mpm_want(body >= 0 && body < w->bodies, f, "body", (mpm_real)body, -1);
     for (i = 0; i < s->surfaces && *st == MPM_OK; i++)
         *st = mpm_want(s->surface[i].body != body, f, "body (it has a surface)", (mpm_real)body, -1);
@@ -456,311 +1017,118 @@ static inline mpm_surface *mpm__surface_new(mpm_surfaces *s, const mpm_world *w,
         return NULL;
     }
     s->surface = (mpm_surface *)more;
-    memset(&s->surface[s->surfaces], 0, sizeof s->surface[0]);
-    s->surface[s->surfaces].body = body;
-    return &s->surface[s->surfaces];
+    c = &s->surface[s->surfaces];
+    memset(c, 0, sizeof *c);
+    c->body = body;
+    c->corners = w->desc.geometry == MPM_3D ? 3 : 2;
+    return c;
 }
 
-/* Takes off what lies behind side d of the grid: faces on the plane or beyond; one that crosses it ends there. */
-static inline void mpm__surface_cut(const mpm_world *w, mpm_surface *c, int d)
+/* Takes off faces with dampers: the body goes on there. */
+static inline void mpm__surface_open(const mpm_world *w, mpm_surface *c)
 {
-    const int axis = d / 2;
-    const mpm_real inward = d & 1 ? MPM_R(-1.0) : MPM_R(1.0), plane = mpm__surface_side(w, d);
-    const mpm_real hair = MPM_R(1e-5) * w->desc.cell;
+    const mpm_body_desc *b = &w->body[c->body].desc;
     int32_t i, n = 0;
     for (i = 0; i < c->faces; i++) {
-        mpm_marker *a = &c->marker[c->face[i][0]], *b = &c->marker[c->face[i][1]];
-        const mpm_real ha = inward * (a->x[axis] - plane), hb = inward * (b->x[axis] - plane);
-        const mpm_real u = ha / (ha - hb);
-        if (ha < hair && hb < hair) continue;
-        if (ha < 0 || hb < 0) { /* the marker behind moves along the face to the plane */
-            mpm_marker *out = ha < 0 ? a : b;
-            out->x[2 - axis] = (1 - u) * a->x[2 - axis] + u * b->x[2 - axis];
-            out->x[axis] = plane;
-        }
-        c->face[n][0] = c->face[i][0];
-        c->face[n++][1] = c->face[i][1];
+        mpm_real vector[3], up, area;
+        mpm__surface_vector(c, i, vector);
+        area = mpm__surface_length(vector);
+        up = area > 0 ? vector[2] / area : 0;
+        if (b->absorb & MPM_FACE_BOTTOM && up < MPM_R(-0.9)) continue;
+        if (b->absorb & MPM_FACE_RIM && up > MPM_R(-0.1) && up < MPM_R(0.1)) continue;
+        mpm__surface_face(c, n++, c->face[i][0], c->face[i][1], c->face[i][2]);
     }
     c->faces = n;
 }
 
-/* Drops markers that no face has, the others in their order. */
-static inline void mpm__surface_pack(mpm_surface *c)
-{
-    int32_t i, n = 0;
-    mpm__surface_join(c);
-    for (i = 0; i < c->markers; i++) {
-        if (c->around[i][0] < 0 && c->around[i][1] < 0) continue;
-        if (c->around[i][0] >= 0) c->face[c->around[i][0]][1] = n;
-        if (c->around[i][1] >= 0) c->face[c->around[i][1]][0] = n;
-        c->marker[n++] = c->marker[i];
-    }
-    c->markers = n;
-    mpm__surface_join(c);
-}
-
-/* The place on a face nearest to x: u, and the distance squared. */
-static inline mpm_real mpm__surface_nearest(const mpm_surface *c, int32_t face, const mpm_real *x, mpm_real *u)
-{
-    const mpm_real *a = c->marker[c->face[face][0]].x, *b = c->marker[c->face[face][1]].x;
-    const mpm_real tx = b[0] - a[0], tz = b[2] - a[2], square = tx * tx + tz * tz;
-    mpm_real at = square > 0 ? ((x[0] - a[0]) * tx + (x[2] - a[2]) * tz) / square : 0, dx, dz;
-    at = at < 0 ? 0 : at > 1 ? 1 : at;
-    dx = a[0] + at * tx - x[0];
-    dz = a[2] + at * tz - x[2];
-    *u = at;
-    return dx * dx + dz * dz;
-}
-
-/* ---- the layer under a surface ------------------------------------------------------------------- */
-
-/* Numbers the way along a part of the surface from marker `from` on. Returns the way at its end; the layer is round if
-   it leads back to where it began. */
-static inline mpm_real mpm__layer_part(mpm_surface *c, int32_t from, mpm_real way)
-{
-    while (c->marker[from].along < 0) {
-        const int32_t face = c->around[from][1], to = face < 0 ? from : c->face[face][1];
-        const mpm_real x = c->marker[to].x[0] - c->marker[from].x[0], z = c->marker[to].x[2] - c->marker[from].x[2];
-        c->marker[from].along = way;
-        way += mpm_sqrt(x * x + z * z);
-        from = to;
-    }
-    if (c->around[from][1] >= 0) c->layer.round = way;
-    return way;
-}
-
-/* Numbers all parts: from open ends, a reach of the means apart, or a closed one from its first marker. */
-static inline void mpm__layer_way(mpm_surface *c, mpm_real depth)
-{
-    mpm_real way = 0;
-    int32_t i;
-    for (i = 0; i < c->markers; i++) c->marker[i].along = -1;
-    for (i = 0; i < c->markers; i++)
-        if (c->around[i][0] < 0) way = mpm__layer_part(c, i, way) + depth;
-    if (c->marker[0].along < 0) mpm__layer_part(c, 0, 0);
-}
-
-/* Distance along the surface. */
-static inline mpm_real mpm__layer_apart(const mpm_layer *y, mpm_real a, mpm_real b)
-{
-    const mpm_real d = a > b ? a - b : b - a;
-    return y->round > 0 && d > y->round / 2 ? y->round - d : d;
-}
-
-/* The place between two neighbours; at the seam of a closed surface the nearer of them. */
-static inline mpm_real mpm__layer_between(const mpm_layer *y, mpm_real a, mpm_real b, mpm_real u)
-{
-    const mpm_real d = a > b ? a - b : b - a;
-    if (y->round > 0 && d > y->round / 2) return u < MPM_R(0.5) ? a : b;
-    return (1 - u) * a + u * b;
-}
-
-/* Where the point at x has its foot on the surface, and how deep it lies below. */
-static inline mpm_real mpm__layer_foot(const mpm_surface *c, const mpm_real *x, mpm_real *along)
-{
-    mpm_real nearest = 0, u = 0, square;
-    int32_t i, best = -1;
-    for (i = 0; i < c->faces; i++) {
-        square = mpm__surface_nearest(c, i, x, &u);
-        if (best >= 0 && !(square < nearest)) continue;
-        nearest = square;
-        best = i;
-        *along = c->marker[c->face[i][u < MPM_R(0.5) ? 0 : 1]].along; /* good to half a face */
-    }
-    return mpm_sqrt(nearest);
-}
-
-/* Weight of a point at q reaches from a station: (1 - q)^2 (1 + 2 q). */
-static inline mpm_real mpm__layer_weight(mpm_real q) { return q < 1 ? (1 - q) * (1 - q) * (1 + 2 * q) : 0; }
-
-/* The stations of a new layer: the markers' ways, rising. They come so but for where parts begin. */
-static inline mpm_status mpm__layer_stations(mpm_surface *c, mpm_fault *f)
-{
-    mpm_layer *y = &c->layer;
-    const size_t n = (size_t)c->markers;
-    int32_t i, k;
-    y->along = (mpm_real *)MPM_MALLOC(3 * n * sizeof *y->along);
-    y->begin = (int32_t *)MPM_MALLOC((n + 1) * sizeof *y->begin);
-    if (!y->along || !y->begin) return mpm__surface_full(f, c->markers);
-    y->stations = c->markers;
-    y->mean = y->along + n;
-    y->change = y->mean + n;
-    memset(y->mean, 0, 2 * n * sizeof *y->mean);
-    for (i = 0; i < c->markers; i++) {
-        for (k = i; k > 0 && y->along[k - 1] > c->marker[i].along; k--) y->along[k] = y->along[k - 1];
-        y->along[k] = c->marker[i].along;
-    }
-    return MPM_OK;
-}
-
-/* Visits the points of a body that lie within the layer: counts their entries at all stations, or writes them. */
-static inline int32_t mpm__layer_visit(const mpm_surfaces *s, const mpm_world *w, mpm_surface *c, const mpm_real *foot,
-                                       int write)
-{
-    const mpm_body *b = &w->body[c->body];
-    mpm_layer *y = &c->layer;
-    int32_t k, i, n = 0;
-    for (k = 0; k < y->stations; k++) {
-        mpm_real sum = 0;
-        const int32_t from = n;
-        for (i = 0; i < b->count; i++) {
-            mpm_real part = 0;
-            if (foot[i] >= 0) part = mpm__layer_weight(mpm__layer_apart(y, foot[i], y->along[k]) / s->depth);
-            if (!(part > 0)) continue;
-            if (write) {
-                y->point[n] = w->points.id[b->first + i] - y->first_id;
-                y->weight[n] = w->points.mass[b->first + i] * part;
-                sum += y->weight[n];
-            }
-            n++;
-        }
-        if (!write) continue;
-        y->begin[k] = from;
-        for (i = from; i < n; i++) y->weight[i] /= sum;
-    }
-    if (write) y->begin[y->stations] = n;
-    return n;
-}
-
-/* The points' feet on the surface: how far along it, -1 where they lie deeper than the layer; and their numbers. */
-static inline void mpm__layer_feet(const mpm_surfaces *s, const mpm_world *w, mpm_surface *c, mpm_real *foot)
-{
-    const mpm_body *b = &w->body[c->body];
-    int32_t i;
-    int d;
-    c->layer.points = b->count;
-    c->layer.first_id = b->count > 0 ? w->points.id[b->first] : 0;
-    for (i = 0; i < b->count; i++) {
-        mpm_real x[3];
-        if (w->points.id[b->first + i] < c->layer.first_id) c->layer.first_id = w->points.id[b->first + i];
-        for (d = 0; d < 3; d++) x[d] = w->points.x[d][b->first + i];
-        if (!(mpm__layer_foot(c, x, &foot[i]) < s->depth)) foot[i] = -1;
-    }
-}
-
-/* The layer of a new surface, from the points as they lie. */
-static inline mpm_status mpm__layer_make(mpm_surfaces *s, const mpm_world *w, mpm_surface *c)
-{
-    const size_t points = (size_t)w->body[c->body].count;
-    mpm_layer *y = &c->layer;
-    mpm_real *foot = (mpm_real *)MPM_MALLOC((points + 1) * sizeof *foot);
-    mpm_status st = foot ? MPM_OK : mpm__surface_full(&s->fault, (int32_t)points);
-    mpm__layer_way(c, s->depth);
-    if (st == MPM_OK) st = mpm__layer_stations(c, &s->fault);
-    if (st == MPM_OK) {
-        size_t entries;
-        mpm__layer_feet(s, w, c, foot);
-        entries = (size_t)mpm__layer_visit(s, w, c, foot, 0);
-        y->point = (int32_t *)MPM_MALLOC((entries + points + 1) * sizeof *y->point);
-        y->weight = (mpm_real *)MPM_MALLOC((entries + 1) * sizeof *y->weight);
-        if (!y->point || !y->weight) st = mpm__surface_full(&s->fault, (int32_t)entries);
-        else y->where = y->point + entries;
-    }
-    if (st == MPM_OK) mpm__layer_visit(s, w, c, foot, 1);
-    mpm__surface_release(foot);
-    return st;
-}
-
-/* The means of a layer now, and what they have grown by since they were taken last. */
-static inline void mpm__layer_update(const mpm_world *w, mpm_surface *c)
-{
-    const mpm_body *b = &w->body[c->body];
-    mpm_layer *y = &c->layer;
-    int32_t i, k;
-    for (i = 0; i < y->points; i++) y->where[i] = -1;
-    for (i = b->first; i < b->first + b->active; i++) {
-        const int32_t number = w->points.id[i] - y->first_id;
-        if (number >= 0 && number < y->points) y->where[number] = i;
-    }
-    for (k = 0; k < y->stations; k++) {
-        mpm_real sum = 0;
-        for (i = y->begin[k]; i < y->begin[k + 1]; i++)
-            if (y->where[y->point[i]] >= 0) sum += y->weight[i] * w->points.plastic_work[y->where[y->point[i]]];
-        y->change[k] = sum - y->mean[k];
-        y->mean[k] = sum;
-    }
-}
-
-/* What the layer has grown by at a place along it: linear between stations. */
-static inline mpm_real mpm__layer_change(const mpm_layer *y, mpm_real along)
-{
-    int32_t low = 0, high = y->stations - 1;
-    mpm_real u;
-    if (y->stations == 0) return 0;
-    while (high - low > 1) {
-        const int32_t middle = (low + high) / 2;
-        if (y->along[middle] > along) high = middle;
-        else low = middle;
-    }
-    u = y->along[high] > y->along[low] ? (along - y->along[low]) / (y->along[high] - y->along[low]) : 0;
-    u = u < 0 ? 0 : u > 1 ? 1 : u;
-    return (1 - u) * y->change[low] + u * y->change[high];
-}
-
-/* G of all meetings that have touched: dG = l (d<w_p> of this body + d<w_p> of the other where it is met). */
-static inline void mpm__layer_grow(mpm_surfaces *s)
-{
-    int32_t a, i;
-    int k;
-    for (a = 0; a < s->surfaces; a++)
-        for (i = 0; i < s->surface[a].markers; i++)
-            for (k = 0; k < MPM_SURFACE_MEETS; k++) {
-                mpm_marker *m = &s->surface[a].marker[i];
-                mpm_meet *meet = &m->meet[k];
-                const mpm_surface *c;
-                mpm_real from, to;
-                if (meet->other < 0 || !meet->touched) continue;
-                c = &s->surface[meet->other];
-                from = c->marker[c->face[meet->face][0]].along;
-                to = c->marker[c->face[meet->face][1]].along;
-                to = mpm__layer_between(&c->layer, from, to, meet->u);
-                meet->dissipated += s->depth * (mpm__layer_change(&s->surface[a].layer, m->along) +
-                                                mpm__layer_change(&c->layer, to));
-            }
-}
-
-/* ---- making a surface whole ------------------------------------------------------------------------ */
-
-/* Cuts a new surface at the mirrors, gives its markers the body's velocity and counts it in. */
+/* Joins the faces of a new surface, cuts it at the mirrors, gives its markers the body's velocity and counts it in. */
 static inline mpm_status mpm__surface_finish(mpm_surfaces *s, const mpm_world *w)
 {
     mpm_surface *c = &s->surface[s->surfaces];
-    mpm_status st;
+    mpm_status st = mpm__surface_join(s, c);
     int32_t i;
     int d;
-    for (d = 0; d < 6; d++)
-        if (d / 2 != 1 && w->desc.side[d] == MPM_SIDE_SYMMETRY) mpm__surface_cut(w, c, d);
-    mpm__surface_pack(c);
-    st = mpm_want(c->markers >= 2, &s->fault, "markers of a surface", (mpm_real)c->markers, -1);
+    for (d = 0; d < 6 && st == MPM_OK; d++)
+        if (mpm__surface_mirrors(w, d)) st = mpm__surface_cut(s, w, c, d);
+    if (st == MPM_OK) st = mpm_want(c->markers >= 2, &s->fault, "markers of a surface", (mpm_real)c->markers, -1);
     if (st != MPM_OK) return mpm__surface_drop(c, st);
-    for (i = 0; i < c->markers; i++)
+    for (i = 0; i < c->markers; i++) {
+        c->marker[i].parent[0] = c->marker[i].parent[1] = -1;
         for (d = 0; d < 3; d++) c->marker[i].v[d] = w->body[c->body].desc.velocity[d];
+    }
     mpm__surface_measure(w, c);
     if (s->adhesion > 0 && (st = mpm__layer_make(s, w, c)) != MPM_OK) return mpm__surface_drop(c, st);
     s->surfaces++;
     return MPM_OK;
 }
 
+/* Room for the n places of a caller's, checked, and put as markers. */
+static inline mpm_status mpm__surface_places(mpm_surfaces *s, mpm_surface *c, int32_t n, int32_t faces,
+                                             const mpm_real *const x[3])
+{
+    mpm_status st = mpm_want(n >= 2 && faces >= 1, &s->fault, "markers of a surface", (mpm_real)n, -1);
+    int32_t i;
+    int d;
+    for (i = 0; i < n && st == MPM_OK; i++)
+        for (d = 0; d < 3; d++)
+            if (x[d] && !mpm_finite(x[d][i])) return mpm_fail(&s->fault, MPM_ERR_NAN, "place of a marker", x[d][i], i);
+    if (st == MPM_OK) st = mpm__surface_grow(c, n, faces, &s->fault);
+    if (st != MPM_OK) return mpm__surface_drop(c, st);
+    for (i = 0; i < n; i++) mpm__surface_put(c, i, x[0][i], x[1] ? x[1][i] : 0, x[2][i]);
+    c->markers = n;
+    c->faces = faces;
+    return MPM_OK;
+}
+
 MPM_API mpm_status mpm_surface_add_chain(mpm_surfaces *s, const mpm_world *w, int32_t body, int32_t n,
                                          const mpm_real *x, const mpm_real *z, int closed)
 {
+    const mpm_real *place[3];
     mpm_status st;
     mpm_surface *c = mpm__surface_new(s, w, body, &st);
     int32_t i;
     if (!c) return st;
-    if ((st = mpm_want(n >= 2, &s->fault, "markers of a surface", (mpm_real)n, -1)) != MPM_OK) return st;
-    for (i = 0; i < n; i++)
-        if (!mpm_finite(x[i]) || !mpm_finite(z[i]))
-            return mpm_fail(&s->fault, MPM_ERR_NAN, "place of a marker", mpm_finite(x[i]) ? z[i] : x[i], i);
-    if ((st = mpm__surface_grow(c, n, n, &s->fault)) != MPM_OK) return mpm__surface_drop(c, st);
-    for (i = 0; i < n; i++) mpm__surface_put(c, i, n, x[i], z[i]);
-    c->markers = n;
-    c->faces = closed ? n : n - 1;
+    st = mpm_want(c->corners == 2, &s->fault, "geometry (a chain is of two dimensions)", MPM_3D, -1);
+    if (st != MPM_OK) return st;
+    place[0] = x;
+    place[1] = NULL;
+    place[2] = z;
+    if ((st = mpm__surface_places(s, c, n, closed ? n : n - 1, place)) != MPM_OK) return st;
+    for (i = 0; i < c->faces; i++) mpm__surface_face(c, i, i, i + 1 < n ? i + 1 : 0, i);
     return mpm__surface_finish(s, w);
 }
 
+MPM_API mpm_status mpm_surface_add_triangles(mpm_surfaces *s, const mpm_world *w, int32_t body, int32_t n,
+                                             const mpm_real *const x[3], int32_t triangles,
+                                             const int32_t (*triangle)[3])
+{
+    mpm_status st;
+    mpm_surface *c = mpm__surface_new(s, w, body, &st);
+    int32_t i;
+    int k;
+    if (!c) return st;
+    st = mpm_want(c->corners == 3, &s->fault, "geometry (triangles are of three dimensions)",
+                  (mpm_real)w->desc.geometry, -1);
+    for (i = 0; i < triangles && st == MPM_OK; i++)
+        for (k = 0; k < 3 && st == MPM_OK; k++)
+            st = mpm_want(triangle[i][k] >= 0 && triangle[i][k] < n, &s->fault, "place of triangle",
+                          (mpm_real)triangle[i][k], i);
+    if (st != MPM_OK) return st;
+    if ((st = mpm__surface_places(s, c, n, triangles, x)) != MPM_OK) return st;
+    for (i = 0; i < triangles; i++) mpm__surface_face(c, i, triangle[i][0], triangle[i][1], triangle[i][2]);
+    return mpm__surface_finish(s, w);
+}
+
+/* ---- surfaces of shapes ------------------------------------------------------------------------------ */
+
+/* Intervals of a way, an even number, none longer than `apart`. */
+static inline int32_t mpm__outline_count(mpm_real way, mpm_real apart)
+{
+    return 2 * (1 + (int32_t)(way / (2 * apart) * (1 - 64 * MPM_EPSILON)));
+}
+
 /* Marker i on the outline of a box, counter-clockwise from its lower left corner: na below and above, nb at a side. */
-static inline void mpm__surface_box(const mpm_shape *b, int32_t i, int32_t na, int32_t nb, mpm_real *x, mpm_real *z)
+static inline void mpm__outline_box(const mpm_shape *b, int32_t i, int32_t na, int32_t nb, mpm_real *x, mpm_real *z)
 {
     static const int right[5] = {-1, 1, 1, -1, -1}, up[5] = {-1, -1, 1, 1, -1};
     int side = 0;
@@ -771,42 +1139,315 @@ static inline void mpm__surface_box(const mpm_shape *b, int32_t i, int32_t na, i
     *z = b->center[2] + b->half[2] * ((1 - u) * (mpm_real)up[side] + u * (mpm_real)up[side + 1]);
 }
 
+/* The chain around an ellipsoid, from its lower pole to the right, or around a cylinder or box. */
+static inline mpm_status mpm__outline_chain(mpm_surfaces *s, mpm_surface *c, const mpm_shape *b, mpm_real apart)
+{
+    const int32_t na = 1 + (int32_t)(2 * b->half[0] / apart * (1 - 64 * MPM_EPSILON));
+    const int32_t nb = 1 + (int32_t)(2 * b->half[2] / apart * (1 - 64 * MPM_EPSILON));
+    const int round = b->kind == MPM_SHAPE_ELLIPSOID;
+    const int32_t quarter = 1 + (int32_t)(MPM_PI / 4 * (b->half[0] + b->half[2]) / apart);
+    const int32_t n = round ? 4 * quarter : 2 * (na + nb);
+    mpm_status st = mpm__surface_grow(c, n, n, &s->fault);
+    int32_t i;
+    for (i = 0; i < n && st == MPM_OK; i++) {
+        const double turn = (double)(2 * MPM_PI * ((mpm_real)i / (mpm_real)n - MPM_R(0.25)));
+        mpm_real x, z;
+        if (round) {
+            x = i % (n / 2) ? b->center[0] + b->half[0] * (mpm_real)cos(turn) : b->center[0];
+            z = b->center[2] + b->half[2] * (mpm_real)sin(turn);
+        } else {
+            mpm__outline_box(b, i, na, nb, &x, &z);
+        }
+        mpm__surface_put(c, i, x, 0, z);
+        mpm__surface_face(c, i, i, i + 1 < n ? i + 1 : 0, i);
+    }
+    c->markers = c->faces = st == MPM_OK ? n : 0;
+    return st;
+}
+
+/* The surface of a cube as a lattice of n[0] x n[1] x n[2] intervals: the number of its place (i, j, k). The lower face
+   row by row, then rings around the sides, then the upper face. */
+static inline int32_t mpm__outline_number(const int32_t *n, const int32_t *at)
+{
+    const int32_t face = (n[0] + 1) * (n[1] + 1), ring = 2 * (n[0] + n[1]), i = at[0], j = at[1], k = at[2];
+    if (k == 0) return j * (n[0] + 1) + i;
+    if (k == n[2]) return face + (k - 1) * ring + j * (n[0] + 1) + i;
+    return face + (k - 1) * ring + (j == 0 ? i : i == n[0] ? n[0] + j : j == n[1] ? 2 * n[0] + n[1] - i : ring - j);
+}
+
+/* Where a place u of the cube -1 .. 1 lies on the shape: a box as it is; an ellipsoid by equal angles from the middle
+   of each face; a cylinder with squares turned into circles (Shirley and Chiu, J. Graphics Tools 2, 45, 1997). */
+static inline void mpm__outline_map(const mpm_shape *b, mpm_real *u)
+{
+    int d;
+    if (b->kind == MPM_SHAPE_ELLIPSOID) {
+        mpm_real length;
+        for (d = 0; d < 3; d++) u[d] = (mpm_real)tan((double)(MPM_PI / 4 * u[d]));
+        length = mpm__surface_length(u);
+        for (d = 0; d < 3; d++) u[d] /= length;
+    } else if (b->kind == MPM_SHAPE_CYLINDER && (u[0] != 0 || u[1] != 0)) {
+        const int steep = mpm_fabs(u[1]) > mpm_fabs(u[0]);
+        const mpm_real radius = steep ? u[1] : u[0], turn = MPM_PI / 4 * (steep ? u[0] : u[1]) / radius;
+        u[steep ? 1 : 0] = radius * (mpm_real)cos((double)turn);
+        u[steep ? 0 : 1] = radius * (mpm_real)sin((double)turn);
+    }
+    for (d = 0; d < 3; d++) u[d] = b->center[d] + b->half[d] * u[d];
+}
+
+/* Two triangles for each square of one face of the cube, across `axis`, at its upper end or the lower. Diagonals lead
+   away from the middle, so that what the shape mirrors the triangles mirror. */
+static inline void mpm__outline_face(mpm_surface *c, const int32_t *n, int axis, int upper)
+{
+    const int b = (axis + 1) % 3, e = (axis + 2) % 3;
+    int32_t p, q, corner[4];
+    int k;
+    for (q = 0; q < n[e]; q++)
+        for (p = 0; p < n[b]; p++) {
+            const int along = (2 * p + 1 < n[b]) == (2 * q + 1 < n[e]);
+            for (k = 0; k < 4; k++) { /* around the square, counter-clockwise from outside */
+                int32_t at[3];
+                at[axis] = upper ? n[axis] : 0;
+                at[b] = p + (upper ? k == 1 || k == 2 : k == 2 || k == 3);
+                at[e] = q + (upper ? k == 2 || k == 3 : k == 1 || k == 2);
+                corner[k] = mpm__outline_number(n, at);
+            }
+            mpm__surface_face(c, c->faces++, corner[0], corner[1], corner[along ? 2 : 3]);
+            mpm__surface_face(c, c->faces++, corner[2], corner[3], corner[along ? 0 : 1]);
+        }
+}
+
+/* The triangles of an ellipsoid, cylinder or box. */
+static inline mpm_status mpm__outline_triangles(mpm_surfaces *s, mpm_surface *c, const mpm_shape *b, mpm_real apart)
+{
+    const mpm_real arc = b->kind == MPM_SHAPE_ELLIPSOID ? MPM_PI / 2 : 2;
+    int32_t n[3], at[3], faces;
+    double count = 0;
+    mpm_status st;
+    int d;
+    for (d = 0; d < 3; d++) n[d] = mpm__outline_count(arc * b->half[d], apart);
+    for (d = 0; d < 3; d++) count += 4.0 * (double)n[d] * (double)n[(d + 1) % 3];
+    if (count > 1e9) return mpm__surface_full(&s->fault, INT32_MAX);
+    faces = (int32_t)count;
+    if ((st = mpm__surface_grow(c, faces / 2 + 2, faces, &s->fault)) != MPM_OK) return st;
+    for (at[2] = 0; at[2] <= n[2]; at[2]++)
+        for (at[1] = 0; at[1] <= n[1]; at[1]++)
+            for (at[0] = 0; at[0] <= n[0]; at[0]++) {
+                mpm_real u[3];
+                int inner = 1;
+                for (d = 0; d < 3; d++) {
+                    inner &= at[d] > 0 && at[d] < n[d];
+                    u[d] = (mpm_real)(2 * at[d] - n[d]) / (mpm_real)n[d];
+                }
+                if (inner) continue;
+                mpm__outline_map(b, u);
+                mpm__surface_put(c, mpm__outline_number(n, at), u[0], u[1], u[2]);
+            }
+    c->markers = faces / 2 + 2; /* Euler: of any closed surface of triangles without a hole through it */
+    for (d = 0; d < 3; d++) {
+        mpm__outline_face(c, n, d, 0);
+        mpm__outline_face(c, n, d, 1);
+    }
+    return MPM_OK;
+}
+
+/* ---- surfaces of shapes that a function gives ---------------------------------------------------------- */
+
+/* A lattice is walked upwards, two of its layers at a time. Each of its squares or cubes falls into triangles or
+   tetrahedra along the paths from its first corner to the last (Kuhn, IBM J. Res. Dev. 4, 518, 1960); where inside
+   meets outside along an edge of those there is a marker. Corner bits: 1 x, 2 y, 4 z. */
+typedef struct mpm__march {
+    const mpm_shape *shape;
+    int32_t n[3];         /* places of the lattice */
+    mpm_real low[3], step[3];
+    uint8_t *in[2];       /* per place of the layers k and k + 1 */
+    int32_t *marker[2];   /* per place, 8 of them: on the edge towards the corner with these bits; -1: none yet */
+} mpm__march;
+
+static inline void mpm__march_place(const mpm__march *q, const int32_t *at, mpm_real *x)
+{
+    int d;
+    for (d = 0; d < 3; d++) x[d] = q->low[d] + (mpm_real)at[d] * q->step[d];
+}
+
+static inline int mpm__march_inside(const mpm__march *q, const mpm_real *x)
+{
+    return mpm_shape_contains(q->shape, x[0], x[1], x[2]);
+}
+
+/* Layer k of the lattice, as the lower (0) or upper (1) of the two. */
+static inline void mpm__march_layer(mpm__march *q, int32_t k, int upper)
+{
+    int32_t at[3], i = 0;
+    at[2] = k;
+    for (at[1] = 0; at[1] < q->n[1]; at[1]++)
+        for (at[0] = 0; at[0] < q->n[0]; at[0]++, i++) {
+            mpm_real x[3];
+            mpm__march_place(q, at, x);
+            q->in[upper][i] = (uint8_t)mpm__march_inside(q, x);
+            memset(&q->marker[upper][8 * i], -1, 8 * sizeof **q->marker);
+        }
+}
+
+/* Moves a corner of the square or cube at `at` to its place. */
+static inline void mpm__march_corner(const int32_t *at, int bits, int32_t *corner)
+{
+    int d;
+    for (d = 0; d < 3; d++) corner[d] = at[d] + (bits >> d & 1);
+}
+
+static inline int32_t mpm__march_index(const mpm__march *q, const int32_t *at, int bits)
+{
+    return (at[1] + (bits >> 1 & 1)) * q->n[0] + at[0] + (bits & 1);
+}
+
+/* The marker between two corners, one inside and one outside, made if there is none yet; -1: no memory. */
+static inline int32_t mpm__march_marker(mpm_surfaces *s, mpm_surface *c, mpm__march *q, const int32_t *at, int a, int b)
+{
+    const int from = a & b, to = a | b; /* one of them has all bits of the other */
+    int32_t *known = &q->marker[from >> 2][8 * mpm__march_index(q, at, from) + (to & ~from)], corner[3];
+    mpm_real x[3], y[3], middle[3];
+    int k, d;
+    if (*known >= 0) return *known;
+    if (mpm__surface_grow(c, c->markers + 1, c->faces, &s->fault) != MPM_OK) return -1;
+    mpm__march_corner(at, a, corner);
+    mpm__march_place(q, corner, x);
+    mpm__march_corner(at, b, corner);
+    mpm__march_place(q, corner, y);
+    for (k = 0; k < 10; k++) { /* x stays inside */
+        for (d = 0; d < 3; d++) middle[d] = (x[d] + y[d]) / 2;
+        memcpy(mpm__march_inside(q, middle) ? x : y, middle, sizeof middle);
+    }
+    mpm__surface_put(c, c->markers, (x[0] + y[0]) / 2, (x[1] + y[1]) / 2, (x[2] + y[2]) / 2);
+    return *known = c->markers++;
+}
+
+/* A face of markers m, turned so that it looks along `out`. */
+static inline mpm_status mpm__march_face(mpm_surfaces *s, mpm_surface *c, const int32_t *m, const mpm_real *out)
+{
+    const mpm_status st = mpm__surface_grow(c, c->markers, c->faces + 1, &s->fault);
+    mpm_real n[3];
+    if (st != MPM_OK) return st;
+    mpm__surface_face(c, c->faces, m[0], m[1], m[c->corners - 1]);
+    mpm__surface_vector(c, c->faces, n);
+    if (mpm__surface_dot(n, out) < 0) mpm__surface_face(c, c->faces, m[1], m[0], m[c->corners - 1]);
+    c->faces++;
+    return MPM_OK;
+}
+
+/* The faces in one triangle or tetrahedron, whose corners have these bits: between `ins` of them that lie inside and
+   the others. */
+static inline mpm_status mpm__march_simplex(mpm_surfaces *s, mpm_surface *c, mpm__march *q, const int32_t *at,
+                                            const int *corner)
+{
+    const int corners = c->corners + 1;
+    int list[4], ins = 0, outs = 0, k, d, i, j;
+    int32_t m[4];
+    mpm_real out[3] = {0, 0, 0};
+    mpm_status st;
+    for (k = 0; k < corners; k++) { /* inside from the front, outside from the back */
+        const int in = q->in[corner[k] >> 2][mpm__march_index(q, at, corner[k])];
+        list[in ? ins++ : corners - ++outs] = corner[k];
+    }
+    if (!ins || !outs) return MPM_OK;
+    for (i = 0; i < ins; i++)
+        for (j = ins; j < corners; j++)
+            for (d = 0; d < 3; d++) out[d] += (mpm_real)((list[j] >> d & 1) - (list[i] >> d & 1)) * q->step[d];
+    for (k = 0; k < ins * outs; k++) { /* around the face: of a square of markers, each shares a corner with the next */
+        i = k / outs;
+        j = i % 2 ? outs - 1 - k % outs : k % outs;
+        if ((m[k] = mpm__march_marker(s, c, q, at, list[i], list[ins + j])) < 0) return MPM_ERR_MEMORY;
+    }
+    if ((st = mpm__march_face(s, c, m, out)) != MPM_OK || ins * outs < 4) return st;
+    m[1] = m[0];
+    return mpm__march_face(s, c, m + 1, out);
+}
+
+/* All paths through the square or cube at `at`. */
+static inline mpm_status mpm__march_cube(mpm_surfaces *s, mpm_surface *c, mpm__march *q, const int32_t *at)
+{
+    static const int path[6][2] = {{1, 4}, {4, 1}, {1, 2}, {2, 1}, {2, 4}, {4, 2}};
+    int k;
+    for (k = 0; k < (c->corners == 3 ? 6 : 2); k++) {
+        int corner[4];
+        mpm_status st;
+        corner[0] = 0;
+        corner[1] = path[k][0];
+        corner[2] = path[k][0] | path[k][1];
+        corner[3] = 7;
+        if ((st = mpm__march_simplex(s, c, q, at, corner)) != MPM_OK) return st;
+    }
+    return MPM_OK;
+}
+
+/* The surface of what the body's function says is inside. */
+static inline mpm_status mpm__march_shape(mpm_surfaces *s, mpm_surface *c, const mpm_shape *b, mpm_real apart)
+{
+    mpm__march q;
+    mpm_status st = MPM_OK;
+    int32_t at[3];
+    double places = 1;
+    void *room;
+    int d;
+    q.shape = b;
+    for (d = 0; d < 3; d++) { /* half a step beyond the box, where nothing is inside; flat in two dimensions */
+        const int flat = d == 1 && c->corners == 2;
+        const mpm_real steps = 2 * b->half[d] / apart;
+        if (!(steps < 30000)) return mpm__surface_full(&s->fault, INT32_MAX);
+        q.n[d] = flat ? 1 : (int32_t)steps + 3;
+        q.step[d] = 2 * b->half[d] / (mpm_real)((int32_t)steps + 1);
+        q.low[d] = flat ? 0 : b->center[d] - b->half[d] - q.step[d] / 2;
+        if (d < 2) places *= (double)q.n[d];
+    }
+    if (places > 1e8) return mpm__surface_full(&s->fault, INT32_MAX);
+    room = MPM_MALLOC((size_t)places * 2 * (8 * sizeof **q.marker + 1));
+    if (!room) return mpm__surface_full(&s->fault, (int32_t)places);
+    q.marker[0] = (int32_t *)room;
+    q.marker[1] = q.marker[0] + 8 * (size_t)places;
+    q.in[0] = (uint8_t *)(q.marker[1] + 8 * (size_t)places);
+    q.in[1] = q.in[0] + (size_t)places;
+    mpm__march_layer(&q, 0, 0);
+    for (at[2] = 0; at[2] < q.n[2] - 1 && st == MPM_OK; at[2]++) {
+        int32_t *marker = q.marker[0];
+        uint8_t *in = q.in[0];
+        mpm__march_layer(&q, at[2] + 1, 1);
+        for (at[1] = 0; at[1] < (q.n[1] > 1 ? q.n[1] - 1 : 1) && st == MPM_OK; at[1]++)
+            for (at[0] = 0; at[0] < q.n[0] - 1 && st == MPM_OK; at[0]++) st = mpm__march_cube(s, c, &q, at);
+        q.marker[0] = q.marker[1];
+        q.marker[1] = marker;
+        q.in[0] = q.in[1];
+        q.in[1] = in;
+    }
+    MPM_FREE(room);
+    return st;
+}
+
 MPM_API mpm_status mpm_surface_add(mpm_surfaces *s, const mpm_world *w, int32_t body)
 {
     mpm_status st;
     mpm_surface *c = mpm__surface_new(s, w, body, &st);
-    const mpm_shape *b;
-    mpm_real apart, turn;
-    int32_t i, na, nb, n;
+    const mpm_body_desc *b;
+    mpm_real apart;
+    int d;
     if (!c) return st;
-    b = &w->body[body].desc.shape;
-    apart = w->body[body].desc.spacing / 2;
-    st = mpm_want(b->kind != MPM_SHAPE_USER && b->half[0] > 0 && b->half[2] > 0, &s->fault,
-                  "shape of body (not an ellipsoid, a cylinder or a box)", (mpm_real)b->kind, body);
+    b = &w->body[body].desc;
+    for (d = 0; d < 3 && st == MPM_OK; d++)
+        if (d != 1 || c->corners == 3)
+            st = mpm_want(b->shape.kind != MPM_SHAPE_NONE && b->shape.half[d] > 0 &&
+                              (b->shape.kind != MPM_SHAPE_USER || b->shape.inside), &s->fault,
+                          "shape of body (it has none)", (mpm_real)b->shape.kind, body);
     if (st != MPM_OK) return st;
-    na = 1 + (int32_t)(2 * b->half[0] / apart * (1 - 64 * MPM_EPSILON));
-    nb = 1 + (int32_t)(2 * b->half[2] / apart * (1 - 64 * MPM_EPSILON));
-    n = 2 * (na + nb);
-    if (b->kind == MPM_SHAPE_ELLIPSOID) n = 4 * (1 + (int32_t)(MPM_PI / 4 * (b->half[0] + b->half[2]) / apart));
-    if ((st = mpm__surface_grow(c, n, n, &s->fault)) != MPM_OK) return mpm__surface_drop(c, st);
-    for (i = 0; i < n; i++) {
-        mpm_real x, z;
-        turn = 2 * MPM_PI * ((mpm_real)i / (mpm_real)n - MPM_R(0.25)); /* from the lower pole to the right */
-        if (b->kind == MPM_SHAPE_ELLIPSOID) {
-            x = i % (n / 2) ? b->center[0] + b->half[0] * (mpm_real)cos((double)turn) : b->center[0];
-            z = b->center[2] + b->half[2] * (mpm_real)sin((double)turn);
-        } else {
-            mpm__surface_box(b, i, na, nb, &x, &z);
-        }
-        mpm__surface_put(c, i, n, x, z);
-    }
-    c->markers = c->faces = n;
+    apart = c->corners == 3 ? w->desc.cell / 4 : b->spacing / 2;
+    if (b->shape.kind == MPM_SHAPE_USER) st = mpm__march_shape(s, c, &b->shape, apart);
+    else if (c->corners == 3) st = mpm__outline_triangles(s, c, &b->shape, apart);
+    else st = mpm__outline_chain(s, c, &b->shape, apart);
+    if (st != MPM_OK) return mpm__surface_drop(c, st);
+    mpm__surface_open(w, c);
     return mpm__surface_finish(s, w);
 }
 
 MPM_API mpm_status mpm_surface_wall_add(mpm_surfaces *s, const mpm_real point[3], const mpm_real normal[3])
 {
-    const mpm_real length = mpm_sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    const mpm_real length = mpm__surface_length(normal);
     mpm_surface_wall *p = &s->wall[s->walls];
     mpm_status st = mpm_want(length > 0, &s->fault, "normal of a wall", length, -1);
     int d;
@@ -827,60 +1468,23 @@ MPM_API mpm_status mpm_surface_wall_add(mpm_surfaces *s, const mpm_real point[3]
 /* Whether a marker can touch a face: it looks towards the marker, and the marker at it. */
 static inline int mpm__surface_faces(const mpm_surface *c, int32_t face, const mpm_marker *m)
 {
-    const mpm_real *a = c->marker[c->face[face][0]].x, *b = c->marker[c->face[face][1]].x;
-    return m->normal[0] * (b[2] - a[2]) - m->normal[2] * (b[0] - a[0]) < 0;
+    mpm_real n[3];
+    mpm__surface_vector(c, face, n);
+    return mpm__surface_dot(m->normal, n) < 0;
 }
 
 /* Takes face `face` for a meeting if it is nearer than what stands there. */
 static inline void mpm__surface_try(const mpm_surface *c, int32_t face, const mpm_marker *m, mpm_meet *meet,
                                     mpm_real *nearest)
 {
-    mpm_real u, square;
+    mpm_real share[3], square;
+    int k;
     if (face < 0 || !mpm__surface_faces(c, face, m)) return;
-    square = mpm__surface_nearest(c, face, m->x, &u);
+    square = mpm__surface_nearest(c, face, m->x, share);
     if (!(square < *nearest)) return;
     *nearest = square;
     meet->face = face;
-    meet->u = u;
-}
-
-static inline uint32_t mpm__surface_bucket(const mpm_surfaces *s, int32_t ix, int32_t iz)
-{
-    return ((uint32_t)ix * 73856093u ^ (uint32_t)iz * 83492791u) & (uint32_t)(s->buckets - 1);
-}
-
-/* The cell of x in direction d; what lies far off the grid is in its last, on either side. */
-static inline int32_t mpm__surface_cell(const mpm_world *w, const mpm_real *x, int d)
-{
-    const mpm_real cell = (x[d] - w->desc.origin[d]) / w->desc.cell + 8, far = MPM_R(1e9);
-    return cell > far ? (int32_t)far : cell > -far ? (int32_t)cell : -(int32_t)far;
-}
-
-/* Puts the faces of a surface, by the cells of their middles, into buckets. */
-static inline mpm_status mpm__surface_sort(mpm_surfaces *s, const mpm_world *w, const mpm_surface *c)
-{
-    int32_t i, buckets = 64;
-    void *p;
-    while (buckets < c->faces) buckets *= 2;
-    p = mpm__surface_room(s->bucket, &s->bucket_room, 0, buckets, sizeof s->bucket[0]);
-    if (!p) return mpm__surface_full(&s->fault, buckets);
-    s->bucket = (int32_t *)p;
-    p = mpm__surface_room(s->next, &s->nexts, 0, c->faces, sizeof s->next[0]);
-    if (!p) return mpm__surface_full(&s->fault, c->faces);
-    s->next = (int32_t *)p;
-    s->buckets = buckets;
-    for (i = 0; i < buckets; i++) s->bucket[i] = -1;
-    for (i = c->faces - 1; i >= 0; i--) {
-        const mpm_real *a = c->marker[c->face[i][0]].x, *b = c->marker[c->face[i][1]].x;
-        mpm_real x[3];
-        uint32_t k;
-        int d;
-        for (d = 0; d < 3; d++) x[d] = (a[d] + b[d]) / 2;
-        k = mpm__surface_bucket(s, mpm__surface_cell(w, x, 0), mpm__surface_cell(w, x, 2));
-        s->next[i] = s->bucket[k];
-        s->bucket[k] = i;
-    }
-    return MPM_OK;
+    for (k = 0; k < 3; k++) meet->share[k] = share[k];
 }
 
 /* The meeting of a marker with `other`, made if there is room for one and `make` says so; or NULL. */
@@ -898,39 +1502,58 @@ static inline mpm_meet *mpm__surface_meet(mpm_marker *m, int32_t other, int make
     return spare;
 }
 
+/* The box around a surface, and a cell more on every side. */
+static inline void mpm__surface_bounds(const mpm_world *w, const mpm_surface *c, mpm_real *low, mpm_real *high)
+{
+    int32_t i;
+    int d;
+    for (d = 0; d < 3; d++) {
+        low[d] = high[d] = c->marker[0].x[d];
+        for (i = 1; i < c->markers; i++) {
+            if (c->marker[i].x[d] < low[d]) low[d] = c->marker[i].x[d];
+            if (c->marker[i].x[d] > high[d]) high[d] = c->marker[i].x[d];
+        }
+        low[d] -= w->desc.cell;
+        high[d] += w->desc.cell;
+    }
+}
+
 /* Looks for the nearest face of surface b, now in the buckets, to each marker of a. */
 static inline void mpm__surface_search(mpm_surfaces *s, const mpm_world *w, int32_t a, int32_t b)
 {
     const mpm_surface *other = &s->surface[b];
-    int32_t i, face, ix, iz;
+    mpm_real low[3], high[3];
+    int32_t i, k;
+    int d;
+    mpm__surface_bounds(w, other, low, high);
     for (i = 0; i < s->surface[a].markers; i++) {
         mpm_marker *m = &s->surface[a].marker[i];
-        const int32_t cx = mpm__surface_cell(w, m->x, 0), cz = mpm__surface_cell(w, m->x, 2);
         mpm_real nearest = w->desc.cell * w->desc.cell;
         mpm_meet found, *meet;
+        int32_t n = 0;
+        int apart = 0;
+        memset(&found, 0, sizeof found);
         found.face = -1;
-        found.u = 0;
-        for (iz = cz - 1; iz <= cz + 1; iz++)
-            for (ix = cx - 1; ix <= cx + 1; ix++)
-                for (face = s->bucket[mpm__surface_bucket(s, ix, iz)]; face >= 0; face = s->next[face])
-                    mpm__surface_try(other, face, m, &found, &nearest);
+        for (d = 0; d < 3; d++) apart |= m->x[d] < low[d] || m->x[d] > high[d];
+        if (!apart) n = mpm__surface_around(s, w, other, 0, m->x, 1);
+        for (k = 0; k < n; k++) mpm__surface_try(other, s->near[k], m, &found, &nearest);
         meet = mpm__surface_meet(m, b, found.face >= 0);
         if (!meet || (found.face < 0 && meet->touched)) continue; /* what once touched is kept: its G is asked for */
         if (found.face < 0) meet->other = MPM_SURFACE_NONE;
         meet->face = found.face;
-        meet->u = found.u;
+        for (k = 0; k < 3; k++) meet->share[k] = found.share[k];
     }
 }
 
 /* Follows a meeting from the face it had to its neighbours, as long as they are nearer. */
 static inline void mpm__surface_follow(const mpm_surface *c, const mpm_marker *m, mpm_meet *meet)
 {
-    mpm_real nearest = mpm__surface_nearest(c, meet->face, m->x, &meet->u);
+    mpm_real nearest = mpm__surface_nearest(c, meet->face, m->x, meet->share);
     int32_t from;
+    int k;
     do {
         from = meet->face;
-        mpm__surface_try(c, c->around[c->face[from][0]][0], m, meet, &nearest);
-        mpm__surface_try(c, c->around[c->face[from][1]][1], m, meet, &nearest);
+        for (k = 0; k < c->corners; k++) mpm__surface_try(c, c->beside[from][k], m, meet, &nearest);
     } while (meet->face != from);
 }
 
@@ -958,36 +1581,41 @@ static inline void mpm__surface_meet_walls(mpm_surfaces *s, const mpm_world *w, 
         }
 }
 
+/* A marker of the face that a meeting is with, k < corners. */
+static inline mpm_marker *mpm__surface_met(const mpm_surfaces *s, const mpm_meet *meet, int k)
+{
+    const mpm_surface *c = &s->surface[meet->other];
+    return &c->marker[c->face[meet->face][k]];
+}
+
 /* Velocity of what a marker meets, where it meets it. */
 static inline void mpm__surface_velocity(const mpm_surfaces *s, const mpm_meet *meet, mpm_real *v)
 {
-    int d;
-    if (meet->other < 0) {
-        for (d = 0; d < 3; d++) v[d] = s->wall[-1 - meet->other].velocity[d];
-    } else {
-        const mpm_surface *c = &s->surface[meet->other];
-        const mpm_marker *a = &c->marker[c->face[meet->face][0]], *b = &c->marker[c->face[meet->face][1]];
-        for (d = 0; d < 3; d++) v[d] = (1 - meet->u) * a->v[d] + meet->u * b->v[d];
+    int k, d;
+    for (d = 0; d < 3; d++) {
+        v[d] = meet->other < 0 ? s->wall[-1 - meet->other].velocity[d] : 0;
+        for (k = 0; meet->other >= 0 && k < s->surface[meet->other].corners; k++)
+            v[d] += meet->share[k] * mpm__surface_met(s, meet, k)->v[d];
     }
 }
 
 /* Gap, its rate and the normal of a meeting with a surface: the normal goes evenly from one marker's to the next. */
 static inline void mpm__surface_gap(const mpm_surfaces *s, const mpm_marker *m, mpm_meet *meet)
 {
-    const mpm_surface *c = &s->surface[meet->other];
-    const mpm_marker *a = &c->marker[c->face[meet->face][0]], *b = &c->marker[c->face[meet->face][1]];
-    mpm_real v[3], length = 0;
-    int d;
-    for (d = 0; d < 3; d++) {
-        meet->normal[d] = (1 - meet->u) * a->normal[d] + meet->u * b->normal[d];
-        length += meet->normal[d] * meet->normal[d];
-    }
-    length = mpm_sqrt(length);
+    mpm_real x[3] = {0, 0, 0}, v[3], length;
+    int k, d;
+    for (d = 0; d < 3; d++) meet->normal[d] = 0;
+    for (k = 0; k < s->surface[meet->other].corners; k++)
+        for (d = 0; d < 3; d++) {
+            meet->normal[d] += meet->share[k] * mpm__surface_met(s, meet, k)->normal[d];
+            x[d] += meet->share[k] * mpm__surface_met(s, meet, k)->x[d];
+        }
+    length = mpm__surface_length(meet->normal);
     mpm__surface_velocity(s, meet, v);
     meet->gap = meet->rate = 0;
     for (d = 0; d < 3; d++) {
         meet->normal[d] = length > 0 ? meet->normal[d] / length : 0;
-        meet->gap += (m->x[d] - (1 - meet->u) * a->x[d] - meet->u * b->x[d]) * meet->normal[d];
+        meet->gap += (m->x[d] - x[d]) * meet->normal[d];
         meet->rate += (m->v[d] - v[d]) * meet->normal[d];
     }
 }
@@ -999,7 +1627,7 @@ static inline mpm_status mpm__surface_find(mpm_surfaces *s, const mpm_world *w)
     int k;
     mpm_status st;
     for (b = 0; b < s->surfaces && s->steps % s->renew == 0; b++) {
-        if ((st = mpm__surface_sort(s, w, &s->surface[b])) != MPM_OK) return st;
+        if ((st = mpm__surface_sort(s, w, &s->surface[b], 0)) != MPM_OK) return st;
         for (a = 0; a < s->surfaces; a++)
             if (a != b && (s->both || a < b)) mpm__surface_search(s, w, a, b);
     }
@@ -1067,11 +1695,6 @@ static inline void mpm__surface_slide(const mpm_surfaces *s, const mpm_marker *m
     for (d = 0; d < 3; d++) slip[d] -= along * meet->normal[d];
 }
 
-static inline mpm_real mpm__surface_length(const mpm_real *v)
-{
-    return mpm_sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* Coulomb's law by a spring that slips: traction t = -k slip, its length at most mu p. */
 static inline void mpm__surface_friction(const mpm_surfaces *s, const mpm_marker *m, mpm_meet *meet, mpm_real k,
                                          mpm_real dt, mpm_real *t)
@@ -1116,25 +1739,24 @@ static inline void mpm__surface_adhere(const mpm_surfaces *s, const mpm_marker *
 static inline void mpm__surface_give(mpm_surfaces *s, mpm_marker *m, mpm_meet *meet, mpm_real k, mpm_real dt,
                                      mpm_real share)
 {
-    mpm_surface *c = meet->other < 0 ? NULL : &s->surface[meet->other];
-    mpm_marker *a = c ? &c->marker[c->face[meet->face][0]] : NULL, *b = c ? &c->marker[c->face[meet->face][1]] : NULL;
+    const int corners = meet->other < 0 ? 0 : s->surface[meet->other].corners;
     mpm_real t[3] = {0, 0, 0};
-    int d;
+    int d, j;
     if (s->friction > 0) mpm__surface_friction(s, m, meet, k, dt, t);
-    if (s->adhesion > 0 && c) mpm__surface_adhere(s, m, meet, k, dt);
+    if (s->adhesion > 0 && meet->other >= 0) mpm__surface_adhere(s, m, meet, k, dt);
     for (d = 0; d < 3; d++) {
         const mpm_real f = share * m->area * (meet->pressure * meet->normal[d] + t[d]);
         const mpm_real pull = share * m->area * meet->tension[d];
-        if (!c) {
+        if (meet->other < 0) {
             m->wall[d] += f;
             continue;
         }
         m->force[d] += f;
-        a->force[d] -= (1 - meet->u) * f;
-        b->force[d] -= meet->u * f;
         m->pull[d] += pull;
-        a->pull[d] -= (1 - meet->u) * pull;
-        b->pull[d] -= meet->u * pull;
+        for (j = 0; j < corners; j++) {
+            mpm__surface_met(s, meet, j)->force[d] -= meet->share[j] * f;
+            mpm__surface_met(s, meet, j)->pull[d] -= meet->share[j] * pull;
+        }
     }
 }
 
@@ -1180,7 +1802,7 @@ MPM_API mpm_status mpm_surface_contact(mpm_surfaces *s, mpm_world *w)
             const mpm_marker *m = &s->surface[a].marker[i];
             mpm_real f[3];
             for (d = 0; d < 3; d++) f[d] = m->force[d] + m->pull[d] + m->wall[d];
-            if (!(f[0] * f[0] + f[2] * f[2] > 0)) continue;
+            if (!(mpm__surface_dot(f, f) > 0)) continue;
             if (mpm__surface_support(s, w, s->surface[a].body, m->x, &at)) mpm_push(w, &at, f);
         }
     return MPM_OK;
@@ -1188,44 +1810,27 @@ MPM_API mpm_status mpm_surface_contact(mpm_surfaces *s, mpm_world *w)
 
 /* ---- moving along -------------------------------------------------------------------------------- */
 
-/* Halves the face: a marker between its two, moving as they do, meeting what the first meets. */
-static inline mpm_status mpm__surface_halve(mpm_surfaces *s, mpm_surface *c, int32_t face)
-{
-    mpm_status st = mpm__surface_grow(c, c->markers + 1, c->faces + 1, &s->fault);
-    int32_t n = c->markers, b;
-    mpm_marker *m;
-    int d;
-    if (st != MPM_OK) return st;
-    b = c->face[face][1];
-    m = &c->marker[n];
-    *m = c->marker[c->face[face][0]];
-    for (d = 0; d < 3; d++) {
-        m->x[d] = (m->x[d] + c->marker[b].x[d]) / 2;
-        m->v[d] = (m->v[d] + c->marker[b].v[d]) / 2;
-        m->force[d] = m->pull[d] = m->wall[d] = 0;
-    }
-    m->along = mpm__layer_between(&c->layer, m->along, c->marker[b].along, MPM_R(0.5));
-    c->face[c->faces][0] = n;
-    c->face[c->faces][1] = b;
-    c->face[face][1] = n;
-    c->around[n][0] = face;
-    c->around[n][1] = c->around[b][0] = c->faces;
-    c->markers++;
-    c->faces++;
-    return MPM_OK;
-}
-
+/* Halves the longest edges of faces that have grown too long. */
 static inline mpm_status mpm__surface_refine(mpm_surfaces *s, const mpm_world *w, mpm_surface *c)
 {
+    const int edges = c->corners == 3 ? 3 : 1;
     const mpm_real most = s->longest * w->desc.cell;
     const int32_t faces = c->faces;
     int32_t i;
+    int k;
     for (i = 0; i < faces; i++) {
-        const mpm_real *a = c->marker[c->face[i][0]].x, *b = c->marker[c->face[i][1]].x;
-        const mpm_real x = b[0] - a[0], z = b[2] - a[2];
-        mpm_status st = MPM_OK;
-        if (x * x + z * z > most * most) st = mpm__surface_halve(s, c, i);
-        if (st != MPM_OK) return st;
+        mpm_real longest = most * most;
+        int worst = -1;
+        mpm_status st;
+        for (k = 0; k < edges; k++) {
+            mpm_real way[3], square;
+            mpm__surface_way(c->marker[c->face[i][k]].x, c->marker[c->face[i][(k + 1) % c->corners]].x, way);
+            square = mpm__surface_dot(way, way);
+            if (!(square > longest)) continue;
+            longest = square;
+            worst = k;
+        }
+        if (worst >= 0 && (st = mpm__surface_split(s, c, i, worst, MPM_R(0.5))) != MPM_OK) return st;
     }
     return MPM_OK;
 }

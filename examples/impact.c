@@ -38,7 +38,7 @@ static int write_frame(const impact *s, const impact_case *c, output *o)
     output_picture p;
     int ok;
     describe_picture(s, c, o, &p);
-    ok = output_outline(&p, &s->surfaces) && output_surfaces(o, &s->world, &s->surfaces) &&
+    ok = output_outline(&p, &s->world, &s->surfaces) && output_surfaces(o, &s->world, &s->surfaces) &&
          output_frame(o, &s->world, NULL, 0, &p);
     free(p.outline);
     return ok;
@@ -49,7 +49,7 @@ static int write_picture(const impact *s, const impact_case *c, output *o)
     output_picture p;
     int ok;
     describe_picture(s, c, o, &p);
-    ok = output_outline(&p, &s->surfaces) && output_png(o, &p, "impact.png");
+    ok = output_outline(&p, &s->world, &s->surfaces) && output_png(o, &p, "impact.png");
     free(p.outline);
     return ok;
 }

@@ -107,9 +107,8 @@ static inline int impact_agrees(const impact_case *c, char *m, size_t n)
     const int surface = !strcmp(c->contact, "surface"), interface = !strcmp(c->bond, "interface");
     if (round_ball && (c->aspect < 1 || c->aspect > 1))
         return case_wants(0, "aspect", c->aspect, "a sphere has none: add --shape ellipsoid", m, n);
-    if (surface && (strcmp(c->geometry, "axisymmetric") || (strcmp(c->bond, "none") && !interface))) {
-        snprintf(m, n, "--contact surface is axisymmetric, with a bond of its own: add --geometry axisymmetric and "
-                       "--bond interface (or none)");
+    if (surface && strcmp(c->bond, "none") && !interface) {
+        snprintf(m, n, "--contact surface has a bond of its own: add --bond interface (or none)");
         return 0;
     }
     if (interface && !surface) {
@@ -441,6 +440,10 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
     r.bonded_area = r.particle_bond.bonded_area * impact_copies(s);
     if (s->surfaces.surfaces > 0) {
         r.meeting = mpm_surface_meets(&s->surfaces, w, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
+        r.meeting.area *= impact_copies(s);
+        r.meeting.touched *= impact_copies(s);
+        r.meeting.bonded *= impact_copies(s);
+        r.meeting.adhesion *= impact_copies(s);
         r.contact_area = r.meeting.touched > 0 ? r.meeting.touched : r.meeting.area;
         r.bonded_area = r.meeting.bonded;
         r.bond.pbcp = r.particle_bond.pbcp = 100 * case_share(r.meeting.bonded, r.meeting.touched);

@@ -52,7 +52,7 @@ static inline int impact_options(impact_case *c, option *o)
     option_add(o, &n, "touch", OPTION_FLAG, &c->touch,
                "contact where the points themselves touch, not where they share a node");
     option_add_word(o, &n, "contact", &c->contact, IMPACT_CONTACTS,
-                    "where bodies meet: at shared nodes, or on their surfaces (axisymmetric, bond interface or none)");
+                    "where bodies meet: at shared nodes, or on their surfaces (with bond interface or none)");
     option_add(o, &n, "surface-damping", OPTION_REAL, &c->surface_damping, "damper of contact on surfaces, rho c");
     option_add(o, &n, "adhesion", OPTION_REAL, &c->adhesion, "bond of the interface: W0 of W0 (G/G_c - 1), J/m2");
     option_add(o, &n, "adhesion-critical", OPTION_REAL, &c->adhesion_critical, "... its G_c, J/m2");

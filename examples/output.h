@@ -139,9 +139,25 @@ static inline void output_heat(output_picture *p, double low, double high)
     p->cut[1].high = high;
 }
 
-/* Draws the surfaces of bodies over both cuts; p->outline is then to be freed. Returns 1, or 0 after a message. */
-static inline int output_outline(output_picture *p, const mpm_surfaces *s)
+/* Where a face lies in the cut: a line as it is, a triangle where it crosses the plane y = at; 0 if it does not. */
+static inline int output_crossing(const mpm_surface *c, int32_t face, double at, double *line)
 {
+    int k, n = 0;
+    for (k = 0; k < c->corners && n < 2; k++) {
+        const mpm_real *a = c->marker[c->face[face][k]].x, *b = c->marker[c->face[face][(k + 1) % c->corners]].x;
+        const double from = (double)a[1] - at, to = (double)b[1] - at;
+        const double u = c->corners == 2 ? 0 : from / (from - to);
+        if (c->corners == 3 && (from > 0) == (to > 0)) continue;
+        line[2 * n] = (1 - u) * (double)a[0] + u * (double)b[0];
+        line[2 * n++ + 1] = (1 - u) * (double)a[2] + u * (double)b[2];
+    }
+    return n == 2;
+}
+
+/* Draws the surfaces of bodies over both cuts; p->outline is then to be freed. Returns 1, or 0 after a message. */
+static inline int output_outline(output_picture *p, const mpm_world *w, const mpm_surfaces *s)
+{
+    const double at = p->cut[0].at + 1e-4 * (double)w->desc.cell; /* a mirror is no place to look at triangles from */
     int32_t a, i;
     size_t n = 0;
     int k;
@@ -150,9 +166,7 @@ static inline int output_outline(output_picture *p, const mpm_surfaces *s)
     p->outline = (double(*)[4])malloc(n * sizeof *p->outline);
     if (!p->outline) return complain("no memory for outlines");
     for (a = 0, n = 0; a < s->surfaces; a++)
-        for (i = 0; i < s->surface[a].faces; i++, n++)
-            for (k = 0; k < 4; k++)
-                p->outline[n][k] = (double)s->surface[a].marker[s->surface[a].face[i][k / 2]].x[k % 2 ? 2 : 0];
+        for (i = 0; i < s->surface[a].faces; i++) n += (size_t)output_crossing(&s->surface[a], i, at, p->outline[n]);
     for (k = 0; k < 2; k++) {
         p->cut[k].line_count = n;
         p->cut[k].lines = (const double(*)[4])p->outline;
@@ -243,14 +257,14 @@ static inline void output_meets(const mpm_surfaces *s, const mpm_marker *m, mpm_
 
 /* All markers' values, one array after the other, n long each; their bodies, and the faces between them. */
 static inline void output_markers(const mpm_world *w, const mpm_surfaces *s, int32_t n, mpm_real *value, int32_t *body,
-                                  int32_t (*line)[2])
+                                  int32_t *cell)
 {
     int32_t a, i, from = 0;
     int k;
     for (a = 0; a < s->surfaces; from += s->surface[a++].markers) {
         const mpm_surface *c = &s->surface[a];
-        for (i = 0; i < c->faces; i++, line++)
-            for (k = 0; k < 2; k++) (*line)[k] = from + c->face[i][k];
+        for (i = 0; i < c->faces; i++)
+            for (k = 0; k < c->corners; k++) *cell++ = from + c->face[i][k];
         for (i = 0; i < c->markers; i++) {
             const mpm_marker *p = &c->marker[i];
             mpm_real one[OUTPUT_MARKER];
@@ -266,8 +280,8 @@ static inline void output_markers(const mpm_world *w, const mpm_surfaces *s, int
 }
 
 /* Writes them as folder/name. */
-static inline int output_lines(const output *o, const mpm_world *w, int32_t n, const mpm_real *value,
-                               const int32_t *body, const int32_t (*line)[2], int32_t lines, const char *name)
+static inline int output_cells(const output *o, const mpm_world *w, int32_t n, const mpm_real *value,
+                               const int32_t *body, const int32_t *cell, int32_t cells, const char *name)
 {
     mpm_io_vtu_desc d = mpm_io_vtu_desc_default();
     mpm_io_field field[8];
@@ -289,8 +303,9 @@ static inline int output_lines(const output *o, const mpm_world *w, int32_t n, c
     for (k = 0; k < 3; k++) d.x[k] = at[k];
     d.fields = field;
     d.field_count = 8;
-    d.lines = line;
-    d.line_count = (size_t)lines;
+    d.cells = cell;
+    d.cell_points = w->desc.geometry == MPM_3D ? 3 : 2;
+    d.cell_count = (size_t)cells;
     d.time = (double)w->time * 1e3;
     d.float32 = 1;
     d.note = note;
@@ -302,26 +317,26 @@ static inline int output_surfaces(output *o, const mpm_world *w, const mpm_surfa
 {
     const clock_t mark = clock();
     mpm_real *value;
-    int32_t(*line)[2], *body, a, n = 0, lines = 0;
+    int32_t *cell, *body, a, n = 0, cells = 0;
     char name[64], path[PATH_BYTES];
     mpm_fault fault;
     int ok;
-    for (a = 0; a < s->surfaces; a++) n += s->surface[a].markers, lines += s->surface[a].faces;
+    for (a = 0; a < s->surfaces; a++) n += s->surface[a].markers, cells += s->surface[a].faces;
     if (n == 0) return 1;
     value = (mpm_real *)malloc((size_t)n * OUTPUT_MARKER * sizeof *value);
     body = (int32_t *)malloc((size_t)n * sizeof *body);
-    line = (int32_t(*)[2])malloc((size_t)lines * sizeof *line);
+    cell = (int32_t *)malloc((size_t)cells * 3 * sizeof *cell);
     snprintf(name, sizeof name, "surface_%04lld.vtu", (long long)o->frame);
-    ok = (value && body && line) || complain("no memory for surfaces");
-    if (ok) output_markers(w, s, n, value, body, line);
-    ok = ok && output_lines(o, w, n, value, body, (const int32_t(*)[2])line, lines, name);
+    ok = (value && body && cell) || complain("no memory for surfaces");
+    if (ok) output_markers(w, s, n, value, body, cell);
+    ok = ok && output_cells(o, w, n, value, body, cell, cells, name);
     file_in(o->folder, "surface.pvd", path, sizeof path);
     if (ok && ((o->frame == 0 && mpm_io_pvd_begin(path, &fault) < 0) ||
                mpm_io_pvd_add(path, name, (double)w->time * 1e3, &fault) < 0))
         ok = report(&fault, path);
     free(value);
     free(body);
-    free(line);
+    free(cell);
     o->writing += clock() - mark;
     return ok;
 }

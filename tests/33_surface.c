@@ -416,16 +416,16 @@ static void drawn(double work, double critical, double *energy, double *pull, do
     mpm_free(&w);
 }
 
-/* A layer is round where the surface is, and there alone; its means know no point of another part of the surface, or of
-   deeper down: a block's upper half works, its lower face does not notice. */
+/* A layer's means know no point of a thin body's other face, are right where plastic work grows evenly, and know what
+   lies behind a mirror. */
 static void layers(void)
 {
     mpm_desc d = scene_grid(1, 10, 1, 20, 0, 0, -10);
     mpm_body_desc b = scene_body(&metal, mpm_sphere(0, 0, 5, 3), 0.5, 0);
     mpm_surfaces s = mpm_surfaces_default();
     const mpm_layer *y;
-    double worst = 0, weight = 0;
-    int32_t k, i, low;
+    double worst = 0, weight = 0, at_mirror = 0;
+    int32_t k, i;
     mpm_world w;
     d.geometry = MPM_PLANE_STRAIN;
     d.side[0] = d.side[1] = MPM_SIDE_SYMMETRY;
@@ -439,20 +439,27 @@ static void layers(void)
     b.shape = mpm_box(0, 0, -1, 10, 1, 1);
     mpm_body_add(&w, &b);
     for (k = 0; k < 3; k++) CHECK_EQUAL("a layer", mpm_surface_add(&s, &w, k), MPM_OK);
-    CHECK_NEAR("half a disk: an open one", s.surface[0].layer.round, 0, 0);
-    CHECK_RELATIVE("a whole one: round", s.surface[1].layer.round, 6 * pi, 0.001);
-    CHECK_NEAR("a slab from mirror to mirror: two open parts", s.surface[2].layer.round, 0, 0);
-    y = &s.surface[2].layer; /* one face comes first, the other a reach later */
-    low = s.surface[2].marker[0].x[2] < 0 ? 0 : 1;
-    for (k = 0; k < y->stations; k++)
+    y = &s.surface[2].layer;
+    for (k = 0; k < y->markers; k++) {
+        const int up = s.surface[2].marker[k].x[2] > 0;
         for (i = y->begin[k]; i < y->begin[k + 1]; i++) {
             const int32_t at = w.body[2].first + y->point[i];
-            const int below = y->along[k] < MPM_R(10.5) ? !low : low;
             weight += (double)y->weight[i];
-            if ((double)w.points.x[2][at] * (below ? 1 : -1) > 0.5) worst = check_worst(worst, (double)y->weight[i]);
+            if ((double)w.points.x[2][at] * (up ? 1 : -1) < -0.5) worst = check_worst(worst, (double)y->weight[i]);
         }
-    CHECK_RELATIVE("... weights sum to 1 at every station", weight, y->stations, 1e3 * eps);
+    }
+    CHECK_RELATIVE("a slab's: weights sum to 1 at every marker", weight, y->markers, 1e3 * eps);
     CHECK_NEAR("... points of the other face have none", worst, 0, 0);
+    for (i = 0; i < w.points.count; i++) w.points.plastic_work[i] = w.points.x[0][i]; /* grows to the right */
+    for (k = 0; k < 5; k++) CHECK_EQUAL("... a step", mpm_surface_step(&s, &w, MPM_R(1e-9)), MPM_OK);
+    for (i = 0; i < s.surface[2].markers; i++) {
+        const mpm_marker *m = &s.surface[2].marker[i];
+        const double x = (double)m->x[0];
+        if (x > 1.6 && x < 8.4) worst = check_worst(worst, (double)y->mean[i] - x);
+        if (x == 0) at_mirror = (double)y->mean[i];
+    }
+    CHECK_NEAR("... means of what grows evenly", worst, 0, 0.03);
+    CHECK_NEAR("... at a mirror: |x| with weight (1 - q)^2 (1 + 2 q), 3/20 l/(1/2)", at_mirror, 0.3 * 1.5, 0.03);
     mpm_surfaces_free(&s);
     s = mpm_surfaces_default();
     CHECK_EQUAL("a surface without a layer", mpm_surface_add(&s, &w, 0), MPM_OK);

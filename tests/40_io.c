@@ -524,33 +524,38 @@ static int cells_differ(const unsigned char *file, size_t n)
     return bad;
 }
 
-/* Lines between points, of VTK's type 3, instead of a vertex per point. */
-static void test_vtu_lines(mpm_io_vtu_desc d)
+/* Lines or triangles between points, of VTK's types 3 and 5, instead of a vertex per point. */
+static void test_vtu_cells(mpm_io_vtu_desc d, int points)
 {
-    static const int32_t lines[3][2] = {{0, 1}, {1, 2}, {5, 0}}, none[1][2] = {{0, POINTS}};
-    static const int32_t ends[3] = {2, 4, 6};
-    const char *path = FOLDER "/lines.vtu";
+    static const int32_t cells[9] = {0, 1, 2, 5, 0, 3, 4, 1, 5}, none[3] = {0, POINTS, 1};
+    const int32_t ends[3] = {points, 2 * points, 3 * points};
+    const size_t all = 3 * (size_t)points * sizeof cells[0];
+    const unsigned char kind = points == 2 ? 3 : 5;
+    const char *path = FOLDER "/cells.vtu";
     const unsigned char *a;
     unsigned char *file;
     mpm_fault f;
     uint64_t bytes;
     size_t n;
-    d.lines = lines;
-    d.line_count = 3;
-    CHECK_EQUAL("lines written", mpm_io_vtu(path, &d, &f), MPM_OK);
+    d.cells = cells;
+    d.cell_points = points;
+    d.cell_count = 3;
+    CHECK_EQUAL("lines or triangles written", mpm_io_vtu(path, &d, &f), MPM_OK);
     CHECK_TRUE("... three cells", contains(path, "NumberOfCells=\"3\""));
     file = slurp(path, &n);
     a = vtu_array(file, n, "connectivity", "Int32", &bytes);
-    CHECK_TRUE("... their points", a && bytes == sizeof lines && memcmp(a, lines, sizeof lines) == 0);
+    CHECK_TRUE("... their points", a && bytes == all && memcmp(a, cells, all) == 0);
     a = vtu_array(file, n, "offsets", "Int32", &bytes);
     CHECK_TRUE("... their ends", a && bytes == sizeof ends && memcmp(a, ends, sizeof ends) == 0);
     a = vtu_array(file, n, "types", "UInt8", &bytes);
-    CHECK_TRUE("... their type", a && bytes == 3 && a[0] == 3 && a[1] == 3 && a[2] == 3);
+    CHECK_TRUE("... their type", a && bytes == 3 && a[0] == kind && a[1] == kind && a[2] == kind);
     free(file);
-    d.lines = none;
-    d.line_count = 1;
-    CHECK_EQUAL("a line to nowhere", mpm_io_vtu(path, &d, &f), MPM_ERR_ARGUMENT);
-    CHECK_TRUE("... is named", strcmp(f.field, "point of line") == 0 && f.index == 0);
+    d.cells = none;
+    d.cell_count = 1;
+    CHECK_EQUAL("a cell to nowhere", mpm_io_vtu(path, &d, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... is named", strcmp(f.field, "point of cell") == 0 && f.index == 0);
+    d.cell_points = 4;
+    CHECK_EQUAL("cells of four", mpm_io_vtu(path, &d, &f), MPM_ERR_ARGUMENT);
 }
 
 static void test_vtu(void)
@@ -626,7 +631,8 @@ static void test_vtu(void)
     }
     CHECK_EQUAL("float32 values that differ", a ? bad : -1, 0);
     free(file);
-    test_vtu_lines(d);
+    test_vtu_cells(d, 2);
+    test_vtu_cells(d, 3);
     fields[2].data[4] = NULL;
     CHECK_EQUAL("missing component", mpm_io_vtu(path, &d, &f), MPM_ERR_ARGUMENT);
     CHECK_TRUE("fault names it", strcmp(f.field, "data of field") == 0 && f.index == 2);

@@ -62,7 +62,12 @@ static void surfaces(void)
     CHECK_EQUAL("... begun anew", frames, 2);
     for (k = 0; k < 6; k++)
         CHECK_TRUE(fields[k], strstr(text_of("build/tests/surface/surface_0001.vtu"), fields[k]) != NULL);
-    refused("--contact surface", "--geometry axisymmetric");
+    CHECK_EQUAL("... in three dimensions",
+                run("--time 0.5 --functions cubic --contact surface --bond interface --springs --cell 2 --spacing 1 "
+                    "--frames 2 --substrate-diameter 20 --substrate-height 10 --out build/tests/surface"), 0);
+    CHECK_TRUE("... its surface in ParaView", strstr(text_of("build/tests/surface/surface_0001.vtu"),
+                                                     "Name=\"adhesion (J/m2)\"") != NULL);
+    refused("--contact surface", "--bond interface");
     refused("--bond interface", "--contact surface");
     refused("--contact surface --geometry axisymmetric --bond interface --adhesion-reach 0", "0");
     refused("--contact faces", "faces");

@@ -1,5 +1,6 @@
-/* Contact on surfaces: every field of mpm_surfaces, outlines and chains of any places, walls, points and markers that
-   were overwritten; steps, meetings and pictures stay within memory. SPDX-License-Identifier: MIT */
+/* Contact on surfaces in all geometries: every field of mpm_surfaces, shapes, functions, chains and triangles of any
+   places, walls, points and markers that were overwritten; steps and meetings stay within memory.
+   SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "fuzz.h"
 #include "scene.h"
@@ -17,6 +18,7 @@ static void describe(fuzz *f, mpm_surfaces *s)
     FUZZ_REAL(f, s->adhesion);
     FUZZ_REAL(f, s->critical);
     FUZZ_REAL(f, s->depth);
+    if (s->depth > 3) s->depth = 3; /* deeper than the bodies: all points under all markers, seconds with sanitizers */
     FUZZ_REAL(f, s->reach);
     FUZZ_CHOICE(f, s->both);
     FUZZ_CHOICE(f, s->renew);
@@ -36,6 +38,38 @@ static mpm_status chain(fuzz *f, mpm_surfaces *s, const mpm_world *w, int32_t k)
         FUZZ_REAL(f, z[i]);
     }
     return mpm_surface_add_chain(s, w, k, fuzz_int(f, CHAIN) % (CHAIN + 1), x, z, (int)fuzz_byte(f) & 1);
+}
+
+/* Triangles of the caller's in three dimensions: a tetrahedron, or whatever. */
+static mpm_status triangles(fuzz *f, mpm_surfaces *s, const mpm_world *w, int32_t k)
+{
+    mpm_real x[3][4] = {{0, 2, 0, 0}, {0, 0, 2, 0}, {0, 0, 0, 2}};
+    int32_t triangle[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    const mpm_real *at[3];
+    int i, d;
+    for (d = 0; d < 3; d++) {
+        at[d] = x[d];
+        fuzz_reals(f, x[d], 4);
+        for (i = 0; i < 4; i++) triangle[i][d] = fuzz_int(f, triangle[i][d]);
+    }
+    return mpm_surface_add_triangles(s, w, k, 4, at, fuzz_int(f, 4) % 5, (const int32_t(*)[3])triangle);
+}
+
+/* A shape that changes with every question. */
+static int inside(void *context, const mpm_real x[3])
+{
+    return (fuzz_byte((fuzz *)context) > 40) ^ (x[0] * x[0] + x[1] * x[1] + (x[2] - 1) * (x[2] - 1) > 2);
+}
+
+static mpm_status surface(fuzz *f, mpm_surfaces *s, mpm_world *w, int32_t k)
+{
+    const unsigned how = fuzz_byte(f);
+    if (how < 180) return mpm_surface_add(s, w, k);
+    if (how < 220) return w->desc.geometry == MPM_3D ? triangles(f, s, w, k) : chain(f, s, w, k);
+    w->body[k].desc.shape.kind = MPM_SHAPE_USER;
+    w->body[k].desc.shape.inside = inside;
+    w->body[k].desc.shape.context = f;
+    return mpm_surface_add(s, w, k);
 }
 
 static mpm_status wall(fuzz *f, mpm_surfaces *s)
@@ -64,9 +98,10 @@ static void overwrite(fuzz *f, mpm_surfaces *s, mpm_world *w)
 static void steps(fuzz *f, mpm_surfaces *s, mpm_world *w)
 {
     const mpm_real dt = mpm_time_step(w, MPM_R(0.1));
+    const int n = w->desc.geometry == MPM_3D ? 2 : 6;
     int i;
-    for (i = 0; i < 6; i++) {
-        if (i == 3) overwrite(f, s, w);
+    for (i = 0; i < n; i++) {
+        if (i == n / 2) overwrite(f, s, w);
         if (mpm_surface_step(s, w, dt) < 0) break;
         mpm_surface_meets(s, w, 0, i % 2 ? -1 : 1);
     }
@@ -80,7 +115,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     scene c;
     int32_t k;
     scene_describe(&c);
-    c.desc.geometry = fuzz_byte(&f) & 1 ? MPM_PLANE_STRAIN : MPM_AXISYMMETRIC;
+    c.desc.geometry = (mpm_geometry)(fuzz_byte(&f) % MPM_GEOMETRIES);
     c.desc.basis = (mpm_basis)((fuzz_byte(&f) + MPM_CUBIC) % MPM_BASES);
     FUZZ_WANT(scene_begin(&c));
     s.adhesion = 43;
@@ -90,7 +125,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     describe(&f, &s);
     if (mpm_surfaces_check(&s, &fault) < 0) FUZZ_WANT(mpm_surface_add(&s, &c.world, 0) < 0);
     for (k = 0; k < 2; k++)
-        if ((fuzz_byte(&f) < 200 ? mpm_surface_add(&s, &c.world, k) : chain(&f, &s, &c.world, k)) < 0) break;
+        if (surface(&f, &s, &c.world, k) < 0) break;
     if (fuzz_byte(&f) > 160) wall(&f, &s);
     if (s.surfaces > 0) steps(&f, &s, &c.world);
     mpm_surfaces_free(&s);

@@ -1,6 +1,6 @@
 /* memory - every allocation fails in turn: setting up, bodies, clouds, rules, user fields, growth during steps, a
-   picture, its file, surfaces, a spray. A failure is a status, what was there goes on, nothing is lost. One line at the end.
-   SPDX-License-Identifier: MIT */
+   picture, its file, surfaces of two and three dimensions, a spray. A failure is a status, what was there goes on,
+   nothing is lost. One line at the end. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,29 +75,39 @@ static void world(void)
     mpm_free(&w);
 }
 
-static void surfaces(void)
+/* A ball over a block, by their shapes; the ball in three dimensions as a function says. */
+static int inside(void *context, const mpm_real x[3])
 {
+    (void)context;
+    return (x[0] - 8) * (x[0] - 8) + (x[1] - 8) * (x[1] - 8) + (x[2] - 10) * (x[2] - 10) < 4;
+}
+
+static void surfaces(mpm_geometry geometry)
+{
+    const mpm_real low[3] = {5, 5, 7}, high[3] = {11, 11, 13};
+    const int deep = geometry == MPM_3D;
     mpm_desc d = mpm_desc_default();
     mpm_body_desc b = mpm_body_desc_default();
     mpm_surfaces s = mpm_surfaces_default();
     mpm_world w;
     int32_t k, i, before;
-    d.geometry = MPM_PLANE_STRAIN;
+    d.geometry = geometry;
     d.basis = MPM_CUBIC;
     d.cell = 1;
-    d.cells[0] = d.cells[2] = 16;
+    d.cells[0] = d.cells[1] = d.cells[2] = 16;
     b.spacing = MPM_R(0.5);
     b.density = b.wave_p = b.wave_s = 1;
     s.adhesion = s.critical = s.depth = s.reach = 1;
     TRY(mpm_init(&w, &d, NULL, 0));
     for (k = 0; k < 2; k++) {
-        b.shape = k ? mpm_box(4, 0, 2, 12, 1, 8) : mpm_sphere(8, 0, 10, 2);
+        b.shape = deep ? mpm_shape_user(inside, NULL, low, high) : mpm_sphere(8, 0, 10, 2);
+        if (k) b.shape = deep ? mpm_box(6, 6, 5, 10, 10, 8) : mpm_box(4, 0, 2, 12, 1, 8);
         TRY(mpm_body_add(&w, &b));
         TRY(mpm_surface_add(&s, &w, k));
     }
-    for (i = 0; i < w.points.count; i++) w.points.v[0][i] = (w.points.x[0][i] - 8) / 2; /* faces stretch: they are halved */
     before = s.surface[1].markers;
-    for (i = 0; i < 20; i++) TRY(mpm_surface_step(&s, &w, MPM_R(0.1)));
+    for (i = 0; i < w.points.count; i++) w.points.v[0][i] = (w.points.x[0][i] - 8) / 2; /* faces grow */
+    for (i = 0; i < (deep ? 8 : 20); i++) TRY(mpm_surface_step(&s, &w, deep ? MPM_R(0.3) : MPM_R(0.1)));
     want(s.surface[1].markers > before, "halved");
     mpm_surfaces_free(&s);
     mpm_free(&w);
@@ -119,7 +129,8 @@ int main(void)
     for (failing = 1;; failing++) {
         count = 0;
         world();
-        surfaces();
+        surfaces(MPM_PLANE_STRAIN);
+        surfaces(MPM_3D);
         spray();
         if (count < failing) break;
     }

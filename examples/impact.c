@@ -213,7 +213,8 @@ static int finish(const impact *s, const impact_case *c, output *o, const option
 
 static int carry_out(int argc, char **argv)
 {
-    impact_case c = impact_case_default();
+    const int surface = !strcmp(impact_method(argc, argv, "thesis"), "surface");
+    impact_case c = surface ? impact_case_surface() : impact_case_default();
     output o = output_of("build/impact-out", "impact", "um", "ns", 1);
     option options[IMPACT_OPTIONS];
     int n = impact_options(&c, options);
@@ -225,6 +226,7 @@ static int carry_out(int argc, char **argv)
     output_options(&o, options, &n);
     parsed = options_parse(argc, argv, about, options, n);
     if (parsed) return parsed < 0 ? 1 : 0;
+    impact_complete(&c);
     if (!output_check(&o, message, sizeof message) || !impact_begin(&s, &c, message, sizeof message))
         return !complain(message);
     ok = output_begin(&o) && run(&s, &c, &o) && finish(&s, &c, &o, options, n);

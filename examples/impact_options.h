@@ -12,6 +12,9 @@
 static inline int impact_options(impact_case *c, option *o)
 {
     int n = 0;
+    option_add_word(o, &n, "method", &c->method, IMPACT_METHODS,
+                    "sets the other defaults: source A's model, or contact and bond on surfaces (try --method surface "
+                    "--help); 0 is then by the diameter");
     option_add(o, &n, "diameter", OPTION_REAL, &c->diameter, "particle diameter, um");
     option_add(o, &n, "velocity", OPTION_REAL, &c->velocity, "impact velocity, m/s");
     option_add(o, &n, "angle", OPTION_REAL, &c->angle,

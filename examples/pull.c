@@ -203,7 +203,8 @@ static int run(impact *s, const impact_case *ic, const pull_case *o, curve *c, c
 
 static int carry_out(int argc, char **argv)
 {
-    impact_case c = impact_case_default();
+    const int surface = !strcmp(impact_method(argc, argv, "thesis"), "surface");
+    impact_case c = surface ? impact_case_surface() : impact_case_default();
     pull_case o = {20, 20, 5, 4, 3, "build/pull-out", 0};
     option options[IMPACT_OPTIONS];
     int n = impact_options(&c, options);
@@ -225,6 +226,7 @@ static int carry_out(int argc, char **argv)
     parsed = options_parse(argc, argv, "A metal particle hits a plate and is drawn off it again: the bond's strength.",
                            options, n);
     if (parsed) return parsed < 0 ? 1 : 0;
+    impact_complete(&c);
     if (!check(&o, message, sizeof message) || !impact_begin(&s, &c, message, sizeof message)) {
         complain(message);
         return 1;

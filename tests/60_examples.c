@@ -67,6 +67,12 @@ static void surfaces(void)
                     "--frames 2 --substrate-diameter 20 --substrate-height 10 --out build/tests/surface"), 0);
     CHECK_TRUE("... its surface in ParaView", strstr(text_of("build/tests/surface/surface_0001.vtu"),
                                                      "Name=\"adhesion (J/m2)\"") != NULL);
+    CHECK_EQUAL("the method of surfaces: sizes by the diameter",
+                run("--method surface --diameter 28 --time 0.2 --frames 0 --out build/tests/surface"), 0);
+    CHECK_NEAR("... 28 cells in it", number_in(path, "cell"), 1, 1e-12);
+    CHECK_NEAR("... a substrate of 2.5 diameters", number_in(path, "substrate-diameter"), 70, 1e-12);
+    CHECK_NEAR("... what is given stays", number_in(path, "time"), 0.2, 1e-12);
+    CHECK_TRUE("... cubic splines", strstr(text_of(path), "\"functions\": \"cubic\"") != NULL);
     refused("--contact surface", "--bond interface");
     refused("--bond interface", "--contact surface");
     refused("--contact surface --geometry axisymmetric --bond interface --adhesion-reach 0", "0");

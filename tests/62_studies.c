@@ -32,7 +32,7 @@ static void refused(const char *command, const char *value)
 
 static void critical(void)
 {
-    const char *search = "critical_velocity " COARSE "--time 40 --gc 1000 --gdot 2e5 --rule stays --low 500 --high 900 "
+    const char *search = "critical_velocity --method thesis " COARSE "--time 40 --gc 1000 --gdot 2e5 --rule stays --low 500 --high 900 "
                          "--scan 100 --step 50 --quiet --out " FOLDER "/critical ";
     const char *summary = FOLDER "/critical/summary.json";
     char command[600];
@@ -64,8 +64,8 @@ static void critical(void)
     CHECK_EQUAL("without bonding", run(command), 0);
     CHECK_EQUAL("... no velocity bonds", number_in(summary, "offsets_without_bond"), 1);
     CHECK_EQUAL("no velocity bonds; the range ends between two that are tested",
-                run("critical_velocity " COARSE "--time 2 --bond none --low 500 --high 680 --scan 100 --out " FOLDER
-                    "/none"), 0);
+                run("critical_velocity --method thesis " COARSE "--time 2 --bond none --low 500 --high 680 --scan 100 --out "
+                    FOLDER "/none"), 0);
     CHECK_TRUE("... says up to which", strstr(output, "median none up to 600 m/s") != NULL);
     CHECK_TRUE("... and no infinity", !strstr(output, "inf"));
     refused("critical_velocity --rule often", "often");
@@ -79,6 +79,34 @@ static void critical(void)
     refused("critical_velocity --material mud", "mud");
     refused("critical_velocity --velocity 810", "--velocity");
     refused("critical_velocity " COARSE "--time 1 --low 800 --high 800 --out /proc/none", "/proc/none");
+}
+
+/* From a guess outwards, and from one position's answer to the next: fewer runs than the whole range. */
+static void near(void)
+{
+    const char *search = "critical_velocity --cell 2 --adhesion-critical 1000 --step 13 --quiet --out " FOLDER
+                         "/near ";
+    const char *summary = FOLDER "/near/summary.json";
+    char command[600];
+    double first;
+    CHECK_EQUAL("a search with contact on surfaces", run(search), 0);
+    first = number_in(summary, "critical_velocity_m_s");
+    printf("# coarse, on surfaces: %.0f (%.0f - %.0f) m/s in %.0f runs\n", first, number_in(summary, "lowest_m_s"),
+           number_in(summary, "highest_m_s"), number_in(summary, "runs"));
+    CHECK_EQUAL("... bonds at four positions", number_in(summary, "offsets_without_bond"), 0);
+    CHECK_TRUE("... in fewer runs than one scan each", number_in(summary, "runs") < 4 * 9);
+    CHECK_TRUE("... within the range", first > 600 && first < 1000);
+    snprintf(command, sizeof command, "%s --low %.0f --high %.0f", search, first - 120, first + 60);
+    CHECK_EQUAL("from a guess below the answer", run(command), 0);
+    CHECK_NEAR("... the same one", number_in(summary, "critical_velocity_m_s"), first, 26);
+    snprintf(command, sizeof command, "%s --low %.0f --high %.0f", search, first - 60, first + 200);
+    CHECK_EQUAL("from a guess above it", run(command), 0);
+    CHECK_NEAR("... the same one", number_in(summary, "critical_velocity_m_s"), first, 26);
+    snprintf(command, sizeof command, "%s --bond none --offsets 1 --low 700 --high 900", search);
+    CHECK_EQUAL("nothing bonds", run(command), 0);
+    CHECK_EQUAL("... up to the range's end", number_in(summary, "offsets_without_bond"), 1);
+    refused("calibrate --method surface", "--method");
+    refused("impact --method guess", "guess");
 }
 
 static void calibration(void)
@@ -272,6 +300,7 @@ int main(void)
     stores();
     lengths();
     critical();
+    near();
     calibration();
     particles();
     reproduction();

@@ -156,6 +156,7 @@ typedef struct errand {
 static int options(calibration *q, study *s, errand *e, option *o)
 {
     int n = study_case_options(&q->base, o);
+    option_drop(o, &n, "method"); /* of source A's bond */
     option_drop(o, &n, "diameter"); /* what the sweep sets */
     option_drop(o, &n, "velocity");
     option_drop(o, &n, "gc");

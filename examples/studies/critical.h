@@ -127,15 +127,51 @@ static inline critical_answer critical_read(const critical_curve *curve, int fir
     return a;
 }
 
-/* Scans the range, then halves the gap under the lowest velocity that bonds. As study_need. */
-static inline int critical_search(study *s, const impact_case *c, const critical_range *range,
-                                  const critical_rule *rule, critical_curve *curve, critical_answer *a,
-                                  char *message, size_t n)
+/* Runs of one search from a guess, about: its ends, two steps aside, the bisection. */
+static inline int critical_cost_near(const critical_range *range)
 {
-    const int first = curve->runs, scans = critical_scans(range);
-    int k, status;
-    for (k = 0; k < scans; k++)
-        if ((status = critical_try(s, *c, range->low + k * range->scan, rule, curve, message, n)) <= 0) return status;
+    return 4 + (int)ceil(log(range->scan / range->step) / log(2.0) - 1e-9);
+}
+
+/* The whole range, scan by scan. As study_need. */
+static inline int critical_scan(study *s, const impact_case *c, const critical_range *range, const critical_rule *rule,
+                                critical_curve *curve, char *message, size_t n)
+{
+    const int scans = critical_scans(range);
+    int k, status = 1;
+    for (k = 0; k < scans && status > 0; k++)
+        status = critical_try(s, *c, range->low + k * range->scan, rule, curve, message, n);
+    return status;
+}
+
+/* From a guess of the answer outwards, by steps that double, within the range: down while it bonds, else up until it
+   does. As study_need. */
+static inline int critical_near(study *s, const impact_case *c, const critical_range *range, const critical_rule *rule,
+                                const critical_answer *guess, critical_curve *curve, char *message, size_t n)
+{
+    double wide = guess->velocity - guess->below, v = fmax(guess->below, range->low);
+    int status = critical_try(s, *c, v, rule, curve, message, n);
+    const int down = status > 0 && curve->run[curve->runs - 1].bonds;
+    if (!down) v = guess->velocity - wide;
+    while (status > 0 && (down ? v > range->low : v < range->high)) {
+        v = down ? fmax(v - wide, range->low) : fmin(v + wide, range->high);
+        status = critical_try(s, *c, v, rule, curve, message, n);
+        if (status > 0 && curve->run[curve->runs - 1].bonds != down) break;
+        wide *= 2;
+    }
+    return status;
+}
+
+/* Brackets the lowest velocity that bonds - by the whole range, or from a guess of the answer if there is one - and
+   halves the gap under it. As study_need. */
+static inline int critical_search(study *s, const impact_case *c, const critical_range *range,
+                                  const critical_rule *rule, const critical_answer *guess, critical_curve *curve,
+                                  critical_answer *a, char *message, size_t n)
+{
+    const int first = curve->runs;
+    int status = guess ? critical_near(s, c, range, rule, guess, curve, message, n)
+                       : critical_scan(s, c, range, rule, curve, message, n);
+    if (status <= 0) return status;
     *a = critical_read(curve, first, c->offset);
     while (a->velocity < HUGE_VAL && a->below > 0 && a->velocity - a->below > range->step * (1 + 1e-9)) {
         status = critical_try(s, *c, (a->velocity + a->below) / 2, rule, curve, message, n);

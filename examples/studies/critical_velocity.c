@@ -196,11 +196,19 @@ static int check(const request *q, char *m, size_t n)
 /* All offsets. As study_need. */
 static int search(request *q, findings *f, char *message, size_t n)
 {
+    const int surface = !strcmp(q->c.method, "surface");
+    const double middle = (q->range.low + q->range.high) / 2;
+    critical_answer guess;
     int k, status = 1;
-    q->s.planned = critical_cost(&q->range) * q->offsets;
+    memset(&guess, 0, sizeof guess);
+    guess.below = middle - q->range.scan / 2;
+    guess.velocity = middle + q->range.scan / 2;
+    q->s.planned = (surface ? critical_cost_near(&q->range) : critical_cost(&q->range)) * q->offsets;
     for (k = 0; k < q->offsets && status > 0; k++) {
         q->c.offset = q->c.cell * k / (double)q->offsets;
-        status = critical_search(&q->s, &q->c, &q->range, &q->rule, &f->curve, &f->answer[k], message, n);
+        status = critical_search(&q->s, &q->c, &q->range, &q->rule, surface ? &guess : NULL, &f->curve, &f->answer[k],
+                                 message, n);
+        if (f->answer[k].velocity < HUGE_VAL && f->answer[k].below > 0) guess = f->answer[k]; /* the next one's */
         study_progress_end(&q->s);
     }
     if (status <= 0) return status;
@@ -212,16 +220,22 @@ static int search(request *q, findings *f, char *message, size_t n)
 static int carry_out(int argc, char **argv)
 {
     static findings f;
+    const int surface = !strcmp(impact_method(argc, argv, "surface"), "surface");
     request q;
     char message[400];
     mpm_fault fault;
     int status;
     q.s = study_of("build/critical_velocity-out");
-    q.c = study_case_default();
+    q.c = surface ? impact_case_surface() : study_case_default();
     q.substrate = "thesis";
-    q.offsets = 1;
+    q.offsets = surface ? 4 : 1;
     q.rule = critical_rule_default();
     q.range = critical_range_default();
+    if (surface) {
+        q.rule.name = "stays";
+        q.rule.stays = 5;
+        q.range.low = 600;
+    }
     options(&q);
     status = options_parse(argc, argv, "The lowest impact velocity that bonds (source A, 5.2.2). Writes curve.csv,\n"
                            "curve.png and summary.json into the output folder; run again after an interruption,\n"

@@ -610,6 +610,7 @@ static inline int particles_options(particles_case *q, option *o)
 {
     int n = impact_options(&q->base, o);
     option_drop(o, &n, "gap"); /* by the places of the particles */
+    option_drop(o, &n, "method");
     output_options(&q->out, o, &n);
     option_add(o, &n, "stop-after", OPTION_INTEGER, &q->stop_after,
                "write a checkpoint after so many steps and stop; 0: never");

@@ -40,13 +40,14 @@ static inline impact_case study_case_default(void)
 
 /* Source A's substrates (Table 5.3): its diameter between the listed sizes by interpolation, in proportion
    beyond them; 10 um high between 14 and 30 um, in proportion beyond. "large": 5 diameters wide, 2.5 high.
-   Fills in what is 0. */
+   Fills in what is 0; with method surface as impact_complete. */
 static inline void study_complete(impact_case *c, const char *substrate)
 {
     static const double size[5] = {14, 18, 22, 26, 30}, wide[5] = {30, 36, 44, 46, 50};
     const double d = c->diameter, near_size = d < 14 ? 14 : d > 30 ? 30 : d;
     double width = d * (d < 14 ? 30.0 / 14 : 50.0 / 30);
     int k;
+    impact_complete(c);
     for (k = 0; k < 4; k++)
         if (d >= size[k] && d <= size[k + 1])
             width = wide[k] + (wide[k + 1] - wide[k]) * (d - size[k]) / (size[k + 1] - size[k]);

@@ -64,7 +64,7 @@ int critical_repeat(work *w, impact_case c, variation vary, const char *rule_nam
         if (vary == VARY_GRID) one.offset = c.cell * k / times;
         if (vary == VARY_GAP) one.gap = c.cell * part;
         if (vary == VARY_STEP) one.dt_factor = c.dt_factor * (1 - 0.1 * part);
-        status = critical_search(&w->s, &one, &range, &rule, &curve, &a[k], w->message, sizeof w->message);
+        status = critical_search(&w->s, &one, &range, &rule, NULL, &curve, &a[k], w->message, sizeof w->message);
         if (status <= 0) return status;
         out->lost += a[k].lost;
         out->each[k] = a[k].velocity;

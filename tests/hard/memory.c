@@ -1,6 +1,6 @@
 /* memory - every allocation fails in turn: setting up, bodies, clouds, rules, user fields, growth during steps, a
-   picture, its file, surfaces, a spray. A failure is a status, what was there goes on, nothing is lost. One line at the end.
-   SPDX-License-Identifier: MIT */
+   picture, its file, surfaces, a spray. A failure is a status, what was there goes on, nothing is lost. One line at the
+   end. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -95,7 +95,7 @@ static void surfaces(void)
         TRY(mpm_body_add(&w, &b));
         TRY(mpm_surface_add(&s, &w, k));
     }
-    for (i = 0; i < w.points.count; i++) w.points.v[0][i] = (w.points.x[0][i] - 8) / 2; /* faces stretch: they are halved */
+    for (i = 0; i < w.points.count; i++) w.points.v[0][i] = (w.points.x[0][i] - 8) / 2; /* faces stretch, are halved */
     before = s.surface[1].markers;
     for (i = 0; i < 20; i++) TRY(mpm_surface_step(&s, &w, MPM_R(0.1)));
     want(s.surface[1].markers > before, "halved");

@@ -82,7 +82,8 @@ build/verify/%.md: build/verify/%
 	$< >$@.part && mv $@.part $@
 
 verify: $(VERIFY:=.md) ## the verification ladder again: writes docs/verification.md; resumable, `make -j2 verify`
-	sh tests/verify/page.sh $(VERIFY:=.md) >docs/verification.md
+	sh tests/verify/page.sh $(VERIFY:=.md) >docs/verification.md.part
+	mv docs/verification.md.part docs/verification.md
 	@grep -h '^[0-9]* rows' docs/verification.md
 
 # The runs behind docs/reproduction.md and the README, and the numbers quoted there.
@@ -97,8 +98,8 @@ impacts: build/impact ## the impacts of docs/reproduction.md: bonded, unbonded, 
 		--time 101.333 --out build/jet_38
 	build/impact $(RIM) --diameter 45 --velocity 550 --substrate-diameter 75 --substrate-height 15 --time 120 \
 		--out build/jet_45
-	cp build/jet_38/impact.png docs/data/jet_38.png
-	cp build/jet_45/impact.png docs/data/jet_45.png
+	for d in 38 45; do cp build/jet_$$d/impact.png docs/data/jet_$$d.png.part && \
+		mv docs/data/jet_$$d.png.part docs/data/jet_$$d.png || exit 1; done
 
 # Writes its part of docs/reproduction.md, and docs/data; finished runs are kept in build/reproduction-out.
 # The page in this repository is that of BUDGET=desk. DESK=crit,held runs these parts at the desk budget.

@@ -35,6 +35,19 @@ static inline void options_json(mpm_io_json *j, const option *options, int n)
     mpm_io_json_close(j);
 }
 
+/* Whether there is a file to read: 1 or 0; -1, after a message, if it is there and cannot be opened, or its path was
+   too long (""). */
+static inline int is_there(const char *path)
+{
+    FILE *f;
+    errno = 0;
+    f = fopen(path, "rb");
+    if (f) return fclose(f), 1;
+    if (*path && errno == ENOENT) return 0;
+    fprintf(stderr, "error: %s cannot be read\n", *path ? path : "a path that is too long");
+    return -1;
+}
+
 /* The text of a file, or "" if there is none. Returns 1; 0, with "" too, if the file is there and cannot be read, is
    longer than room - 1 bytes or holds a zero. */
 static inline int text_read(const char *path, char *text, size_t room)
@@ -67,6 +80,19 @@ static inline uint64_t hash_text(uint64_t h, const char *text)
 {
     for (; *text; text++) h = (h ^ (uint64_t)(unsigned char)*text) * UINT64_C(1099511628211);
     return h;
+}
+
+/* The same of the first `lines` lines of a file. Returns 1; 0 if it has not so many whole ones, or cannot be read. */
+static inline int hash_lines(FILE *f, int64_t lines, uint64_t *h)
+{
+    char one[2] = "";
+    for (*h = HASH_NONE; lines > 0; lines -= *one == '\n') {
+        const int c = fgetc(f);
+        if (c <= 0) return 0; /* a table holds no zero */
+        one[0] = (char)c;
+        *h = hash_text(*h, one);
+    }
+    return 1;
 }
 
 #define HASH_DIGITS 17 /* bytes of a hash in hexadecimal digits */

@@ -12,7 +12,7 @@
 
 #include <time.h>
 
-#include "options.h"
+#include "program.h"
 #include "spray_view.h"
 
 /* ---- options ------------------------------------------------------------------------------- */
@@ -220,12 +220,11 @@ static int describe(const settings *o, mpm_spray_desc *d, mpm_spray_window *w, i
 
 /* ---- output -------------------------------------------------------------------------------- */
 
-static int complain(const mpm_fault *fault)
+static int failed(const mpm_fault *fault)
 {
     char text[256];
     mpm_io_fault_text(text, sizeof text, fault);
-    fprintf(stderr, "error: %s\n", text);
-    return 1;
+    return !complain(text);
 }
 
 /* One row of impacts.csv per first touch. */
@@ -341,16 +340,31 @@ static const char *spray_text(const option *o, int n)
     return text;
 }
 
-static mpm_status write_checkpoint(const char *path, mpm_spray *s, const option *o, int options, mpm_fault *fault)
+/* What the files beside a checkpoint hold of the run so far. */
+typedef struct files {
+    uint64_t impacts;     /* checksum of impacts.csv to the last first touch */
+    int64_t since, every; /* the frames of all steps above `since` that `every` divides; every 0: of none */
+} files;
+
+static int spray_blobs(mpm_spray *s, files *past, mpm_blob blob[MPM_SPRAY_BLOBS + 1])
 {
-    mpm_blob blob[MPM_SPRAY_BLOBS];
-    return mpm_io_checkpoint_write(path, spray_text(o, options), blob, mpm_spray_blobs(s, blob), fault);
+    const int n = mpm_spray_blobs(s, blob);
+    blob[n] = mpm_blob_of("files beside it", past, sizeof *past);
+    return n + 1;
 }
 
-static mpm_status read_checkpoint(const char *path, mpm_spray *s, const option *o, int options, mpm_fault *fault)
+static mpm_status write_checkpoint(const char *path, mpm_spray *s, files *past, const option *o, int options,
+                                   mpm_fault *fault)
 {
-    mpm_blob blob[MPM_SPRAY_BLOBS];
-    mpm_status status = mpm_io_checkpoint_read(path, spray_text(o, options), blob, mpm_spray_blobs(s, blob), fault);
+    mpm_blob blob[MPM_SPRAY_BLOBS + 1];
+    return mpm_io_checkpoint_write(path, spray_text(o, options), blob, spray_blobs(s, past, blob), fault);
+}
+
+static mpm_status read_checkpoint(const char *path, mpm_spray *s, files *past, const option *o, int options,
+                                  mpm_fault *fault)
+{
+    mpm_blob blob[MPM_SPRAY_BLOBS + 1];
+    mpm_status status = mpm_io_checkpoint_read(path, spray_text(o, options), blob, spray_blobs(s, past, blob), fault);
     if (status >= 0 && (status = mpm_spray_restored(s, blob)) < 0) *fault = s->fault;
     return status;
 }
@@ -360,73 +374,127 @@ static int64_t steps_per_frame(const settings *o, int64_t steps)
     return o->frames > 0 ? (steps + o->frames - 1) / o->frames : steps + 1;
 }
 
-/* Begins the series with those frames in the folder that this run has or would have written. */
-static mpm_status begin_series(const settings *o, const mpm_spray *s, int64_t every, mpm_fault *fault)
+/* Whether the frames are there that the run before is known to have written and this one would have, too. Those of
+   a run that was itself a restart may be missing. Returns 1, or 0 after a message. */
+static int has_frames(const settings *o, const mpm_spray *s, const files *past, int64_t every)
+{
+    char path[PATH_BYTES], name[64];
+    int64_t step;
+    for (step = every; step <= s->tally.step; step += every) {
+        int found;
+        frame_name(name, sizeof name, step);
+        if ((found = is_there(file_in(o->out, name, path, sizeof path))) < 0) return 0;
+        if (found || past->every <= 0 || step <= past->since || step % past->every) continue;
+        fprintf(stderr, "error: there is no %s, which the run before wrote: the series would lack it; --frames 0 goes "
+                "on without one\n", path);
+        return 0;
+    }
+    return 1;
+}
+
+/* Begins the series with those of them in the folder. Returns 1, or 0 after a message. */
+static int begin_series(const settings *o, const mpm_spray *s, int64_t every)
 {
     char path[PATH_BYTES], frame[PATH_BYTES], name[64];
     mpm_status status;
+    mpm_fault fault;
     int64_t step;
-    snprintf(path, sizeof path, "%s/spray.pvd", o->out);
-    status = mpm_io_pvd_begin(path, fault);
+    status = mpm_io_pvd_begin(file_in(o->out, "spray.pvd", path, sizeof path), &fault);
     for (step = every; step <= s->tally.step && status >= 0; step += every) {
-        FILE *f;
         frame_name(name, sizeof name, step);
-        snprintf(frame, sizeof frame, "%s/%s", o->out, name);
-        if (!(f = fopen(frame, "rb"))) continue;
-        fclose(f);
-        status = mpm_io_pvd_add(path, name, (double)(mpm_real)((double)step * (double)s->desc.dt), fault);
+        if (is_there(file_in(o->out, name, frame, sizeof frame)) <= 0) continue;
+        status = mpm_io_pvd_add(path, name, (double)(mpm_real)((double)step * (double)s->desc.dt), &fault);
     }
-    return status;
+    return status >= 0 || report(&fault, path);
 }
 
-/* Whether a table of impacts is of this spray, with that many rows or more; f then stands at the first. */
-static int holds_impacts(FILE *f, const char *note, int64_t rows)
+/* ... and what the checkpoint at its end will say of them. */
+static void note_series(files *past, const settings *o, const mpm_spray *s, int64_t every)
 {
-    static char line[TEXT_ROOM];
-    size_t length = strlen(note), had;
-    long first;
-    if (!fgets(line, sizeof line, f) || (had = strlen(line)) <= length || strncmp(line, "# mpm.h ", 8)) return 0;
-    if (strncmp(line + had - 1 - length, note, length)) return 0;
-    if (!fgets(line, sizeof line, f) || strcmp(line, IMPACT_COLUMNS "\n") || (first = ftell(f)) < 0) return 0;
-    for (; rows > 0; rows--)
-        if (!fgets(line, sizeof line, f) || line[strlen(line) - 1] != '\n') return 0;
-    return fseek(f, first, SEEK_SET) == 0;
+    const int all = s->tally.step == 0 || (past->every > 0 && every % past->every == 0);
+    if (!all) past->since = s->tally.step;
+    past->every = o->frames > 0 ? every : 0;
 }
 
-/* The table of impacts before the restart, beside the checkpoint or in --out, or NULL. */
-static FILE *earlier_impacts(const settings *o, const char *note, int64_t rows)
+#define IMPACT_HEAD 2 /* lines before the rows */
+
+/* Opens the table of impacts in a folder if its rows are those that the checkpoint knows; f then stands at the first.
+   Returns 1; 0 if there is no such table, -1 after a message if it cannot be read. */
+static int open_impacts(FILE **f, const char *folder, const files *past, int64_t rows)
+{
+    char path[PATH_BYTES];
+    uint64_t sum;
+    const int found = is_there(file_in(folder, "impacts.csv", path, sizeof path));
+    if (found <= 0) return found;
+    if (!(*f = fopen(path, "rb"))) return 0;
+    if (hash_lines(*f, IMPACT_HEAD + rows, &sum) && sum == past->impacts && fseek(*f, 0, SEEK_SET) == 0 &&
+        hash_lines(*f, IMPACT_HEAD, &sum))
+        return 1;
+    fclose(*f);
+    return 0;
+}
+
+/* The table of impacts before the restart, beside the checkpoint or in --out, or NULL after a message. */
+static FILE *earlier_impacts(const settings *o, const files *past, int64_t rows)
 {
     const char *slash = strrchr(o->restart, '/');
-    char path[PATH_BYTES];
-    int k;
-    for (k = 0; k < 2; k++) {
-        FILE *f;
-        if (k == 1) snprintf(path, sizeof path, "%s/impacts.csv", o->out);
-        else snprintf(path, sizeof path, "%.*simpacts.csv", slash ? (int)(slash + 1 - o->restart) : 0, o->restart);
-        f = fopen(path, "rb");
-        if (f && holds_impacts(f, note, rows)) return f;
-        if (f) fclose(f);
-    }
-    return NULL;
+    char beside[PATH_BYTES] = ".";
+    FILE *f = NULL;
+    int found;
+    if (slash) memcpy(beside, o->restart, (size_t)(slash - o->restart)); /* shorter, says parse_length */
+    if (slash) beside[slash - o->restart] = 0;
+    found = open_impacts(&f, beside, past, rows);
+    if (found == 0) found = open_impacts(&f, o->out, past, rows);
+    if (found == 0)
+        fprintf(stderr, "error: --restart %s: neither beside it nor in --out is an impacts.csv with the %lld impacts "
+                "that it was written with\n", o->restart, (long long)rows);
+    return found > 0 ? f : NULL;
 }
 
-/* Begins impacts.csv with the rows of the first touches that the checkpoint has counted. */
-static mpm_status begin_impacts(mpm_io_csv *csv, const settings *o, const mpm_spray *s, const char *note,
-                                mpm_fault *fault)
+/* Begins impacts.csv with the rows of the first touches that the checkpoint has counted. Returns 1, or 0 after a
+   message; then there is no new table. */
+static int begin_impacts(mpm_io_csv *csv, const settings *o, const mpm_spray *s, const files *past, const char *note)
 {
     const int64_t rows = s->tally.first_hits;
-    FILE *old = rows > 0 ? earlier_impacts(o, note, rows) : NULL;
     char path[PATH_BYTES], line[1024];
-    mpm_status status;
-    int64_t k;
-    snprintf(path, sizeof path, "%s/impacts.csv", o->out);
-    status = mpm_io_csv_begin(csv, path, IMPACT_COLUMNS, note, fault);
-    for (k = 0; old && k < rows && status >= 0 && fgets(line, sizeof line, old); k++) mpm_io_put(&csv->file, line);
+    FILE *old = NULL;
+    mpm_fault fault;
+    int64_t k = 0;
+    if (rows > 0 && !(old = earlier_impacts(o, past, rows))) return 0;
+    if (mpm_io_csv_begin(csv, file_in(o->out, "impacts.csv", path, sizeof path), IMPACT_COLUMNS, note, &fault) < 0)
+        report(&fault, path);
+    else
+        for (; k < rows && fgets(line, sizeof line, old); k++) mpm_io_put(&csv->file, line);
     if (old) fclose(old);
-    else if (rows > 0)
-        fprintf(stderr, "notice: no impacts.csv of this spray beside the checkpoint: %lld impacts are missing\n",
-                (long long)rows);
-    return status;
+    if (k == rows && csv->status >= 0) return 1;
+    if (csv->status >= 0) complain("impacts.csv of the run before cannot be read");
+    mpm_io_csv_drop(csv);
+    return 0;
+}
+
+/* Begins table and series where the run before ended; what there is stays until all of it is known to be good.
+   Returns 1, or 0 after a message. */
+static int begin_files(mpm_io_csv *csv, const settings *o, const mpm_spray *s, files *past, int64_t steps,
+                       const char *note)
+{
+    const int64_t every = steps_per_frame(o, steps);
+    mpm_fault fault;
+    if (mpm_io_make_directory(o->out, &fault) < 0) return report(&fault, o->out);
+    if (o->frames > 0 && !has_frames(o, s, past, every)) return 0;
+    if (!begin_impacts(csv, o, s, past, note)) return 0;
+    if (o->frames > 0 && !begin_series(o, s, every)) return mpm_io_csv_drop(csv), 0;
+    note_series(past, o, s, every);
+    return 1;
+}
+
+/* The checksum of the table, now that it is written, for the checkpoint. */
+static mpm_status note_impacts(files *past, const settings *o, const mpm_spray *s, mpm_fault *fault)
+{
+    char path[PATH_BYTES];
+    FILE *f = fopen(file_in(o->out, "impacts.csv", path, sizeof path), "rb");
+    const int whole = f && hash_lines(f, IMPACT_HEAD + s->tally.first_hits, &past->impacts);
+    if (f) fclose(f);
+    return whole ? MPM_OK : mpm_fail(fault, MPM_ERR_FILE, "impacts.csv, just written: cannot be read", 0, -1);
 }
 
 /* ---- results ------------------------------------------------------------------------------- */
@@ -561,16 +629,17 @@ static void describe_in_words(const option *o, int n, char *note, size_t room)
     }
 }
 
-static mpm_status write_all(mpm_spray *s, const settings *o, const option *row, int rows, spray_columns *c,
-                            const char *note, int64_t before, double cpu, mpm_fault *fault)
+static mpm_status write_all(mpm_spray *s, const settings *o, files *past, const option *row, int rows,
+                            spray_columns *c, const char *note, int64_t before, double cpu, mpm_fault *fault)
 {
     char path[PATH_BYTES];
     result r[RESULTS];
     int n = results(r, s, before, cpu), k;
     mpm_status status = write_summary(o->out, r, n, row, rows, fault);
     if (status >= 0) status = write_pictures(o->out, s, c, note, fault);
+    if (status >= 0) status = note_impacts(past, o, s, fault);
     file_in(o->out, "checkpoint.bin", path, sizeof path);
-    if (status >= 0) status = write_checkpoint(path, s, row, rows, fault);
+    if (status >= 0) status = write_checkpoint(path, s, past, row, rows, fault);
     if (status < 0 || o->quiet) return status;
     for (k = 0; k < n; k++) printf("%-44s %14.6g %s\n", r[k].text, r[k].value, r[k].unit);
     printf("%-44s %14.6g %s\n", "memory", (double)s->bytes / 1e6, "MB");
@@ -590,6 +659,7 @@ static int carry_out(int argc, char **argv)
     mpm_spray_window window;
     mpm_io_csv impacts;
     mpm_fault fault = {MPM_OK, NULL, 0, -1};
+    files past = {0, 0, 0};
     spray_columns columns;
     mpm_status status;
     int64_t before, steps = 0;
@@ -599,10 +669,10 @@ static int carry_out(int argc, char **argv)
     d.touch = write_impact;
     d.touch_user = &impacts;
     describe_in_words(row, rows, note, sizeof note);
-    if (mpm_spray_init(&s, &d, NULL, 0) < 0) return complain(&s.fault);
-    if (o.restart[0] && read_checkpoint(o.restart, &s, row, rows, &fault) < 0) {
+    if (mpm_spray_init(&s, &d, NULL, 0) < 0) return failed(&s.fault);
+    if (o.restart[0] && read_checkpoint(o.restart, &s, &past, row, rows, &fault) < 0) {
         fprintf(stderr, "error: --restart %s\n", o.restart);
-        return complain(&fault);
+        return failed(&fault);
     }
     before = s.tally.particle_steps;
     if (s.tally.step > steps) {
@@ -610,13 +680,11 @@ static int carry_out(int argc, char **argv)
         return 1;
     }
     if (spray_columns_init(&columns, (size_t)d.capacity)) return fprintf(stderr, "error: no memory\n"), 1;
-    if (mpm_io_make_directory(o.out, &fault) < 0) return complain(&fault);
-    if (o.frames > 0 && begin_series(&o, &s, steps_per_frame(&o, steps), &fault) < 0) return complain(&fault);
-    if (begin_impacts(&impacts, &o, &s, note, &fault) < 0) return complain(&fault);
+    if (!begin_files(&impacts, &o, &s, &past, steps, note)) return 1;
     status = run(&s, &o, steps, &columns, note, &cpu, &fault);
-    if (mpm_io_csv_end(&impacts, status < 0 ? NULL : &fault) < 0 && status >= 0) return complain(&fault);
-    if (status >= 0) status = write_all(&s, &o, row, rows, &columns, note, before, cpu, &fault);
-    if (status < 0) complain(&fault);
+    if (mpm_io_csv_end(&impacts, status < 0 ? NULL : &fault) < 0 && status >= 0) return failed(&fault);
+    if (status >= 0) status = write_all(&s, &o, &past, row, rows, &columns, note, before, cpu, &fault);
+    if (status < 0) failed(&fault);
     spray_columns_free(&columns);
     mpm_spray_free(&s);
     return status < 0;

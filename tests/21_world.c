@@ -4,6 +4,7 @@
 #include "scene.h"
 #include "check.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -89,6 +90,30 @@ static void bad_choices(void)
     CHECK_EQUAL("a description of zeros is none", mpm_desc_check(&d, NULL), MPM_ERR_ARGUMENT);
 }
 
+/* Dampers stand on lower face and circumference: any other bit of `absorb` is refused, by its name. */
+static void damped_faces(mpm_shape shape)
+{
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    const mpm_desc d = scene_grid(1, 10, 10, 10, 0, 0, 0);
+    mpm_body_desc b = scene_body(&m, shape, 0.5, 0);
+    int bit, taken = 0, wrong = 0, unnamed = 0;
+    mpm_world w;
+    mpm_init(&w, &d, NULL, 0);
+    for (bit = 0; bit < 32; bit++) {
+        b.absorb = (bit < 31 ? 1 << bit : INT_MIN) | (bit % 2 ? MPM_FACE_BOTTOM : 0);
+        if ((b.absorb & ~(MPM_FACE_BOTTOM | MPM_FACE_RIM)) == 0) continue;
+        taken += mpm_body_add(&w, &b) != MPM_ERR_ARGUMENT;
+        unnamed += !w.fault.field || strcmp(w.fault.field, "absorb (a face the body has not)") != 0;
+        wrong += w.bodies != 0 || w.points.count != 0;
+    }
+    CHECK_EQUAL("unknown bits of absorb are refused", taken, 0);
+    CHECK_EQUAL("... by name", unnamed, 0);
+    CHECK_EQUAL("... and the world stays empty", wrong, 0);
+    b.absorb = MPM_FACE_BOTTOM | MPM_FACE_RIM;
+    CHECK_EQUAL("... the two there are, together, are not", mpm_body_add(&w, &b), MPM_OK);
+    mpm_free(&w);
+}
+
 static void bad_bodies(void)
 {
     mpm_material m = scene_metal(1, mpm_units_um_us_ng());
@@ -127,6 +152,8 @@ static void bad_bodies(void)
     b.absorb = MPM_FACE_BOTTOM;
     CHECK_EQUAL("a sphere has no face for a damper", mpm_body_add(&w, &b), MPM_ERR_ARGUMENT);
     mpm_free(&w);
+    damped_faces(mpm_box(2, 2, 2, 8, 8, 8));
+    damped_faces(mpm_cylinder(5, 5, 2, 3, 6));
     CHECK_EQUAL("more points than can be counted", mpm_shape_count(&d, &good.shape, MPM_R(1e-3)), 0);
     d.geometry = MPM_AXISYMMETRIC;
     mpm_init(&w, &d, NULL, 0);

@@ -72,6 +72,46 @@ static void sides(void)
     CHECK_NEAR("open side: momentum, nothing acts", p, 0, 5e3 * eps);
 }
 
+/* An elastic bar of 10 cells thrown at a wall at 50 m/s. The thesis's scheme gives energy there, but knows it: what a
+   wall cuts from the velocities of MUSL is booked. Returns what the ledger misses, over the impact's energy: up to 1 %
+   with dt factor 0.1 and 7 % with 0.5; without the cuts 18 to 94 %. */
+static double unbooked(mpm_basis basis, double factor)
+{
+    mpm_material m = scene_metal(1, mpm_units_um_us_ng());
+    mpm_desc d = scene_grid(1, 2, 1, 40, 0, 0, 0);
+    const mpm_body_desc b = scene_body(&m, mpm_box(0, 0, 1, 2, 1, 11), 0.5, -50);
+    mpm_totals t;
+    mpm_world w;
+    double before;
+    mpm_real dt;
+    d.geometry = MPM_PLANE_STRAIN;
+    d.basis = basis;
+    d.scheme = MPM_SCHEME_THESIS;
+    d.side[0] = d.side[1] = MPM_SIDE_SYMMETRY;
+    d.side[4] = MPM_SIDE_WALL;
+    mpm_init(&w, &d, NULL, 0);
+    mpm_body_add(&w, &b);
+    before = mpm_body_totals(&w, -1).kinetic;
+    dt = mpm_time_step(&w, (mpm_real)factor);
+    while ((double)w.time < 1.6 / 50 + 40 / (double)b.wave_p)
+        if (mpm_step(&w, dt) < 0) break;
+    t = mpm_body_totals(&w, -1);
+    CHECK_TRUE("thesis: a bar comes back from a wall", t.momentum[2] > 0.5 * 50 * t.mass);
+    mpm_free(&w);
+    return (t.kinetic + t.internal + w.ledger.walls) / before - 1;
+}
+
+static void thesis(void)
+{
+    int basis;
+    for (basis = 0; basis < MPM_BASES; basis++) {
+        const double fine = unbooked((mpm_basis)basis, 0.1), coarse = unbooked((mpm_basis)basis, 0.5);
+        printf("# thesis, %s: the ledger misses %.4f and %.4f\n", scene_basis((mpm_basis)basis), fine, coarse);
+        CHECK_NEAR("thesis: the wall's cuts are in the ledger, dt 0.1", fine, 0, 0.012);
+        CHECK_NEAR("thesis: the wall's cuts are in the ledger, dt 0.5", coarse, 0, 0.08);
+    }
+}
+
 /* A block pressed on a wall by gravity slides to v0 - mu g t. */
 static void sliding(double mu)
 {
@@ -312,6 +352,7 @@ int main(void)
     half_space(MPM_CUBIC);
     gravity();
     sides();
+    thesis();
     sliding(0);
     sliding(0.3);
     friction(0);

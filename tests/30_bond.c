@@ -85,6 +85,13 @@ static void faults(void)
             if (k < 3) names(&b, MPM_ERR_ARGUMENT, name[k], 0);
             else CHECK_EQUAL("a length of 0 is the cell's", mpm_bond_check(&b, &f), MPM_OK);
         }
+    memset(&b, 0, sizeof b);
+    names(&b, MPM_ERR_ARGUMENT, "bond (not from mpm_bond_default)", 0);
+    b = mpm_bond_default(&u);
+    b.mark = 0;
+    names(&b, MPM_ERR_ARGUMENT, "bond (not from mpm_bond_default)", 0);
+    b.rule = MPM_BOND_NONE;
+    names(&b, MPM_ERR_ARGUMENT, "bond (not from mpm_bond_default)", 0);
     b = mpm_bond_default(&u);
     b.partner = -2;
     names(&b, MPM_ERR_ARGUMENT, "bond partner", -2);

@@ -592,6 +592,39 @@ static void test_clip(void)
 }
 
 /* Sizes that no picture has: a status, or nothing drawn. */
+/* Cuts and scatters of zeros, and whole ones that are not made from the defaults. */
+static void test_unmarked(void)
+{
+    const mpm_real x[2] = {0, 1};
+    mpm_draw_cut_desc cut;
+    mpm_draw_scatter_desc dots;
+    mpm_draw_canvas c;
+    mpm_draw_rect all;
+    mpm_fault f;
+    int k;
+    mpm_draw_canvas_init(&c, 300, 200, NULL, 0);
+    all = mpm_draw_tile(&c, 1, 1, 0);
+    memset(&cut, 0, sizeof cut);
+    memset(&dots, 0, sizeof dots);
+    for (k = 0; k < 2; k++) {
+        CHECK_EQUAL("a cut of one's own description", mpm_draw_cut(&c, all, &cut, &f), MPM_ERR_ARGUMENT);
+        CHECK_TRUE("... is named", !strcmp(f.field, "desc (not from mpm_draw_cut_desc_default)"));
+        CHECK_EQUAL("... nor beside others", mpm_draw_cuts(&c, &cut, 1, 1, 1, &f), MPM_ERR_ARGUMENT);
+        CHECK_EQUAL("a scatter of one's own description", mpm_draw_scatter(&c, all, &dots, &f), MPM_ERR_ARGUMENT);
+        CHECK_TRUE("... is named", !strcmp(f.field, "desc (not from mpm_draw_scatter_desc_default)"));
+        cut = make_cut();
+        dots = mpm_draw_scatter_desc_default();
+        dots.count = 2;
+        dots.x = dots.y = x;
+        cut.mark = dots.mark = 0;
+    }
+    CHECK_EQUAL("nothing is drawn", darkness(&c, 0, 0, 300, 200), 0);
+    cut.mark = dots.mark = MPM_MARK;
+    CHECK_EQUAL("with the mark it is", mpm_draw_cut(&c, all, &cut, &f), MPM_OK);
+    CHECK_EQUAL("... and so are the dots", mpm_draw_scatter(&c, all, &dots, &f), MPM_OK);
+    mpm_draw_canvas_free(&c);
+}
+
 static void test_odd_sizes(void)
 {
     static const double units[4] = {0, 1e-300, 1e300, (double)NAN};
@@ -651,6 +684,7 @@ int main(void)
     test_ticks();
     test_far_ticks();
     test_odd_sizes();
+    test_unmarked();
     test_color_bar();
     test_plots();
     test_clip();

@@ -67,6 +67,50 @@ static void changed_byte(double part)
     CHECK_EQUAL("a checkpoint with a changed byte", spray_in(WHOLE, HOT "--time 0.004 --restart " FOLDER ".bin"), 1);
 }
 
+#define GO_ON HOT "--time 0.004 --restart " FOLDER "/checkpoint.bin"
+
+/* A file of the folder is not what it was: going on is refused by its name, and the series and the table stay. */
+static void beside(const char *what, const char *name, const char *damage)
+{
+    static const char *const kept[] = {"impacts.csv", "spray.pvd"};
+    size_t n[2], m;
+    unsigned char *before[2], *after;
+    char command[400];
+    int k;
+    snprintf(command, sizeof command, "cd " FOLDER " && cp %s ../beside.kept && %s", name, damage);
+    CHECK_EQUAL(what, system(command), 0);
+    for (k = 0; k < 2; k++) {
+        snprintf(command, sizeof command, FOLDER "/%s", kept[k]);
+        before[k] = slurp(command, &n[k]);
+    }
+    refused(GO_ON, name);
+    for (k = 0; k < 2; k++) {
+        snprintf(command, sizeof command, FOLDER "/%s", kept[k]);
+        after = slurp(command, &m);
+        CHECK_TRUE("... and nothing is begun", m == n[k] && (m == 0 || !memcmp(before[k], after, m)));
+        free(before[k]);
+        free(after);
+    }
+    snprintf(command, sizeof command, "cd " FOLDER " && rm -f %s && mv ../beside.kept %s", name, name);
+    CHECK_EQUAL("... until it is whole", system(command), 0);
+}
+
+/* What stands beside the checkpoint is what it was written with, and is there and to be read. */
+static void test_beside(void)
+{
+    beside("no table of impacts", "impacts.csv", "rm impacts.csv");
+    beside("a digit of it changed", "impacts.csv", "sed '9s/[1-8]\\([0-9]*,[01]\\)$/9\\1/' ../beside.kept >impacts.csv"
+           " && ! cmp -s ../beside.kept impacts.csv");
+    beside("its last row gone", "impacts.csv", "sed '$d' ../beside.kept >impacts.csv");
+    beside("its last row cut", "impacts.csv", "head -c -3 ../beside.kept >impacts.csv");
+    beside("... one that cannot be opened", "impacts.csv", "rm impacts.csv && ln -s impacts.csv impacts.csv");
+    CHECK_TRUE("... which is said", strstr(text_of(FOLDER ".err"), "cannot be read") != NULL);
+    beside("no frame of the series", "spray-000000100.vtu", "rm spray-000000100.vtu");
+    beside("... one that cannot be opened", "spray-000000200.vtu",
+           "rm spray-000000200.vtu && ln -s spray-000000200.vtu spray-000000200.vtu");
+    CHECK_TRUE("... which is said", strstr(text_of(FOLDER ".err"), "cannot be read") != NULL);
+}
+
 static void test_resumed(void)
 {
     static const char *const file[] = {"impacts.csv", "spray.pvd", "checkpoint.bin", "summary.json", "plume.png",
@@ -77,11 +121,18 @@ static void test_resumed(void)
     refused(HOT "--time 0.004 --seed 7 --restart " FOLDER "/checkpoint.bin", "seed 7");
     refused(HOT "--time 0.004 --median-radius 20 --restart " FOLDER "/checkpoint.bin", "median-radius 20");
     for (k = 0; k <= 8; k++) changed_byte(k / 8.0);
-    failed = spray(HOT "--time 0.004 --restart " FOLDER "/checkpoint.bin");
+    test_beside();
+    failed = spray(GO_ON);
     CHECK_EQUAL("it goes on in its folder", failed, 0);
     for (k = 0; k < 8; k++) CHECK_TRUE(file[k], same_file(file[k]));
     CHECK_TRUE("... with the frames of the first part", lines_in(FOLDER "/spray-000000050.vtu") > 0);
     refused(HOT "--steps 790 --restart " FOLDER "/checkpoint.bin", "step 800, past the end");
+    failed = system("cp " WHOLE "/impacts.csv " FOLDER ".rows && rm " FOLDER "/spray-000000100.vtu") ||
+             spray(HOT "--time 0.005 --frames 0 --restart " FOLDER "/checkpoint.bin");
+    CHECK_EQUAL("without a series no frame is missed", failed, 0);
+    CHECK_TRUE("... and the table grows", lines_in(FOLDER "/impacts.csv") > lines_in(FOLDER ".rows"));
+    failed = spray(HOT "--time 0.006 --restart " FOLDER "/checkpoint.bin");
+    CHECK_EQUAL("... nor of one that had none", failed, 0);
     failed = spray(HOT "--time 0.0005");
     CHECK_EQUAL("a run from the start in a used folder", failed, 0);
     CHECK_EQUAL("... begins its series anew", lines_in(FOLDER "/spray.pvd"), lines_in(WHOLE "/spray.pvd"));
@@ -100,7 +151,7 @@ int main(void)
                summary("impact_speed_mean_m_s") > 25 && summary("impact_speed_mean_m_s") < 45);
     CHECK_TRUE("one row per first impact", lines_in(FOLDER "/impacts.csv") >= 2 + (long)summary("deposited"));
     whole = slurp(FOLDER "/checkpoint.bin", &whole_bytes);
-    failed = spray("--steps 2000 --frames 0") || spray("--steps 4000 --frames 0 --restart " FOLDER "/checkpoint.bin");
+    failed = spray("--steps 2000 --frames 2") || spray("--steps 4000 --frames 4 --restart " FOLDER "/checkpoint.bin");
     CHECK_EQUAL("half of it, and a restart from there", failed, 0);
     parts = slurp(FOLDER "/checkpoint.bin", &parts_bytes);
     CHECK_TRUE("give the same bytes", whole && parts && whole_bytes > 100000 && whole_bytes == parts_bytes &&

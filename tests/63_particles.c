@@ -125,6 +125,13 @@ static void afresh(void)
         CHECK_TRUE("... says so", strstr(text_of(FOLDER "/out"), k < 6 ? turn[k].said : "starting afresh") != NULL);
         CHECK_TRUE("... and where", strstr(text_of(FOLDER "/out"), k < 6 ? turn[k].stopped : "at step 5 ") != NULL);
     }
+    k = system("cd " FOLDER "/turns && rm checkpoint.bin && ln -s checkpoint.bin checkpoint.bin");
+    CHECK_EQUAL("a checkpoint that cannot be opened", k, 0);
+    CHECK_TRUE("... is no reason to start afresh", system(command) != 0);
+    CHECK_TRUE("... which is said", strstr(text_of(FOLDER "/out"), "checkpoint.bin cannot be read") != NULL);
+    CHECK_EQUAL("... and it stays", system("test -L " FOLDER "/turns/checkpoint.bin"), 0);
+    k = system("rm " FOLDER "/turns/checkpoint.bin");
+    CHECK_EQUAL("... until it is swept away", k, 0);
 }
 
 /* Whose surface sets the normal between two particles: that one has the higher number. */

@@ -534,16 +534,9 @@ static inline int particles_resume(impact *s, particles_case *q)
 {
     char path[PATH_BYTES], text[200];
     mpm_fault fault;
-    FILE *f;
-    file_in(q->out.folder, "checkpoint.bin", path, sizeof path);
-    errno = 0;
-    f = fopen(path, "rb");
-    if (!f && *path && errno != ENOENT) { /* there, but not to be read: what it holds must not be lost */
-        fprintf(stderr, "error: %s cannot be read\n", path);
-        return 0;
-    }
-    if (f) {
-        fclose(f);
+    const int found = is_there(file_in(q->out.folder, "checkpoint.bin", path, sizeof path));
+    if (found < 0) return 0; /* what it holds must not be lost */
+    if (found) {
         if (particles_checkpoint(s, q, 0, path, &fault) >= 0) {
             if (!q->out.quiet)
                 printf("going on from step %lld of %lld\n", (long long)s->world.steps, (long long)s->steps);

@@ -1,22 +1,52 @@
 #!/bin/sh
 # The prediction's tables: docs/prediction.md and docs/data/prediction*.csv. Called by `make predict`.
 #   sh examples/studies/prediction.sh POSITIONS
-# Runs of a position are kept in build/predict and not repeated; delete the folder after changing the headers.
+# Runs of a position are kept in build/predict and not repeated while version and options are those asked for; delete the
+# folder after changing the headers. Pages, tables and pictures get their names when they are whole.
 set -eu
 positions=${1:-4}
 out=build/predict
 mkdir -p "$out" docs/data
+version=$(sed -n 's/^.define MPM_VERSION "\(.*\)"/\1/p' mpm.h)
+picture=docs/surface.png table=docs/data/prediction_unbonded.csv curve=docs/data/prediction.csv page=docs/prediction.md
+trap 'rm -f $picture.part $table.part $curve.part $page.part' EXIT
+trap 'exit 1' HUP INT TERM
 common="--geometry axisymmetric --functions cubic --contact surface --springs --scheme consistent --gap 0.3"
 half="--substrate-diameter 50 --substrate-height 25"
 value() { # file, key
     sed -n "s/^  \"$2\": \([^,]*\),*$/\1/p" "$1"
 }
 cpu_of() { sed -n 's/^  "cpu_s": \([^,]*\),*$/\1/p' "$@" | awk '{ s += $1 } END { printf "%.0f", s }'; } # kept runs
-impact() { # name, options: an impact whose summary is kept
-    [ -s "$out/$1/summary.json" ] && return
+same() { # summary, options: whether it is of this version and these options
+    awk -v version="$version" '
+        BEGIN {
+            for (i = 2; i < ARGC; i++)
+                if (ARGV[i] ~ /^--/) {
+                    name = substr(ARGV[i], 3)
+                    want[name] = i + 1 < ARGC && ARGV[i + 1] !~ /^--/ ? ARGV[i + 1] : "on"
+                }
+            ARGC = 2
+        }
+        /^ *"[^"]*": / {
+            key = $0; sub(/^ *"/, "", key); sub(/".*/, "", key)
+            text = $0; sub(/^ *"[^"]*": /, "", text); sub(/,$/, "", text); gsub(/"/, "", text)
+            if (key == "mpm_version") known = text == version
+            else if (key == "options") inside = 1
+            else if (inside && key in want && (text == want[key] || (text ~ /^[-0-9]/ && text + 0 == want[key] + 0)))
+                delete want[key]
+        }
+        /^}/ { whole = 1 }
+        END { for (key in want) known = 0; exit !(known && whole) }' "$@"
+}
+impact() { # name, options: an impact whose folder is kept
     name=$1
     shift
-    build/impact $common --bond none --frames 0 --quiet --out "$out/$name" "$@"
+    if [ -s "$out/$name/summary.json" ]; then
+        same "$out/$name/summary.json" $common "$@" && return
+        echo "$out/$name is of another version or other options: it is run again" >&2
+        rm -f "$out/$name/summary.json" # it would stand for this run
+    fi
+    build/impact $common --quiet --out "$out/$name" "$@"
 }
 offset() { awk -v k="$1" -v n="$2" -v cell="$3" 'BEGIN { printf "%.6g", cell * k / n }'; }
 
@@ -26,27 +56,25 @@ unbonded() { # cell, spacing, substrate diameter and height, dt-factor, position
     while [ "$k" -lt "$6" ]; do
         at=$(offset $k "$6" "$1")
         run=unbonded_$1_$2_$3_$at
-        impact "$run" --cell "$1" --spacing "$2" --substrate-diameter "$3" --substrate-height "$4" --dt-factor "$5" \
-            --grid-offset "$at"
+        impact "$run" --bond none --frames 0 --cell "$1" --spacing "$2" --substrate-diameter "$3" --substrate-height "$4" \
+            --dt-factor "$5" --grid-offset "$at"
         s=$out/$run/summary.json
         echo "$1,$2,$3,$at,$(value "$s" v_rest_relative_m_s),$(value "$s" eps_mean),$(value "$s" energy_contact_fraction),$(value "$s" energy_unaccounted),$(value "$s" v_noise_m_s),$(value "$s" cpu_seconds)"
         k=$((k + 1))
     done
 }
-table=docs/data/prediction_unbonded.csv
 {
     echo "cell_um,spacing_um,substrate_um,grid_offset_um,rebound_m_s,mean_strain,contact_fraction,energy_unaccounted,noise_m_s,cpu_s"
     unbonded 1 0.25 50 25 0.2 "$positions"
     unbonded 1 0.25 35 17.5 0.2 $(((positions + 1) / 2))
-} >"$out/unbonded.csv"
-mv "$out/unbonded.csv" $table
+} >$table.part
+mv $table.part $table
 
 # ---- the picture: it stays at 810 m/s
-if [ ! -s "$out/picture/impact.png" ]; then
-    build/impact $common $half --bond interface --cell 1 --spacing 0.25 --dt-factor 0.2 --frames 1 --quiet \
-        --out "$out/picture"
-fi
-cp "$out/picture/impact.png" docs/surface.png
+[ -s "$out/picture/impact.png" ] || rm -f "$out/picture/summary.json"
+impact picture $half --bond interface --frames 1 --cell 1 --spacing 0.25 --dt-factor 0.2
+cp "$out/picture/impact.png" $picture.part
+mv $picture.part $picture
 
 # ---- the critical velocity
 critical() { # diameter, cell, spacing, dt-factor, substrate diameter, height
@@ -59,8 +87,8 @@ critical() { # diameter, cell, spacing, dt-factor, substrate diameter, height
 {
     echo "diameter_um,critical_velocity_m_s,lowest_m_s,highest_m_s,positions,cell_um,spacing_um,basis,contact,bond,substrate_um,geometry,cpu_s"
     critical 14 1 0.25 0.2 50 25
-} >"$out/critical.csv"
-mv "$out/critical.csv" docs/data/prediction.csv
+} >$curve.part
+mv $curve.part $curve
 
 # ---- the page
 rows() { awk -F, "$1" "$2"; }
@@ -75,9 +103,8 @@ strain() {
 lost() { rows "NR > 1 && \$1 == $1 && \$3 == $2 { n++; s += \$7 } END { printf \"%.2f %%\", 100 * s / n }" $table; }
 cpu() { rows "NR > 1 && \$1 == $1 && \$3 == $2 { n++; s += \$10 } END { printf \"%.0f\", s / n }" $table; }
 line() { echo "| $1 | $2 | $3 | $4 | $(spread "$1" "$3") | $(strain "$1" "$3") | $(lost "$1" "$3") | $(cpu "$1" "$3") |"; }
-sed '/^| cell/,$d' docs/prediction.md >"$out/page.md"
 {
-    cat "$out/page.md"
+    sed '/^| cell/,$d' $page
     echo "| cell, um | spacing, um | substrate, um | positions | rebound, m/s | mean plastic strain | lost in contact | CPU, s |"
     echo "|---|---|---|---|---|---|---|---|"
     line 1 0.25 50 "$positions"
@@ -86,6 +113,6 @@ sed '/^| cell/,$d' docs/prediction.md >"$out/page.md"
     echo "| diameter, um | cell, um | spacing, um | positions | critical velocity, m/s | lowest | highest |"
     echo "|---|---|---|---|---|---|---|"
     rows 'NR > 1 { printf "| %s | %s | %s | %s | %.0f | %.0f | %.0f |\n", $1, $6, $7, $5, $2, $3, $4 }' \
-        docs/data/prediction.csv
-} >"$out/whole.md"
-mv "$out/whole.md" docs/prediction.md
+        $curve
+} >$page.part
+mv $page.part $page

@@ -200,5 +200,5 @@ done
     echo "| what | result | tool |"
     echo "|---|---|---|"
     for check in $all; do cat $dir/$check.line; done
-} >docs/quality.md
+} >docs/quality.md.part && mv docs/quality.md.part docs/quality.md || exit 1
 exit "${bad:-0}"

@@ -114,8 +114,8 @@ spray-study: build/spray_study ## source B's results again: a quarter of an hour
 
 # Writes the tables of docs/prediction.md, and docs/data; finished runs are kept in build/predict.
 POSITIONS ?= 4
-predict: build/impact build/critical_velocity ## contact on surfaces, whatever the grid: a quarter of an hour, resumable; POSITIONS=4
-	sh examples/studies/prediction.sh $(POSITIONS)
+predict: build/impact build/critical_velocity ## contact on surfaces, whatever the grid, whatever the size: an hour and a half of CPU, resumable; POSITIONS=4
+	sh examples/studies/prediction.sh $(POSITIONS) $(JOBS)
 
 # fuzz needs clang with libFuzzer; hard takes what it finds of tools and skips the others. CHECKS="gcc kill": these only.
 SECONDS ?= 20

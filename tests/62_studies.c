@@ -32,8 +32,8 @@ static void refused(const char *command, const char *value)
 
 static void critical(void)
 {
-    const char *search = "critical_velocity --method thesis " COARSE "--time 40 --gc 1000 --gdot 2e5 --rule stays --low 500 --high 900 "
-                         "--scan 100 --step 50 --quiet --out " FOLDER "/critical ";
+    const char *search = "critical_velocity --method thesis " COARSE "--time 40 --gc 1000 --gdot 2e5 --rule stays "
+                         "--low 500 --high 900 --scan 100 --step 50 --quiet --out " FOLDER "/critical ";
     const char *summary = FOLDER "/critical/summary.json";
     char command[600];
     double first;
@@ -64,8 +64,8 @@ static void critical(void)
     CHECK_EQUAL("without bonding", run(command), 0);
     CHECK_EQUAL("... no velocity bonds", number_in(summary, "offsets_without_bond"), 1);
     CHECK_EQUAL("no velocity bonds; the range ends between two that are tested",
-                run("critical_velocity --method thesis " COARSE "--time 2 --bond none --low 500 --high 680 --scan 100 --out "
-                    FOLDER "/none"), 0);
+                run("critical_velocity --method thesis " COARSE "--time 2 --bond none --low 500 --high 680 --scan 100 "
+                    "--out " FOLDER "/none"), 0);
     CHECK_TRUE("... says up to which", strstr(output, "median none up to 600 m/s") != NULL);
     CHECK_TRUE("... and no infinity", !strstr(output, "inf"));
     refused("critical_velocity --rule often", "often");
@@ -84,8 +84,7 @@ static void critical(void)
 /* From a guess outwards, and from one position's answer to the next: fewer runs than the whole range. */
 static void near(void)
 {
-    const char *search = "critical_velocity --cell 2 --adhesion-critical 1000 --step 13 --quiet --out " FOLDER
-                         "/near ";
+    const char *search = "critical_velocity --cell 2 --adhesion-critical 1000 --step 13 --quiet --out " FOLDER "/near ";
     const char *summary = FOLDER "/near/summary.json";
     char command[600];
     double first;

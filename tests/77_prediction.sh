@@ -19,17 +19,28 @@ exec "$top/build/impact" "\$@" --time 0.02
 END
 cat >"$dir/build/critical_velocity" <<'END'
 #!/bin/sh
-while [ "$1" != --out ]; do shift; done
-mkdir -p "$2/runs"
-printf '{\n  "cpu_s": 3,\n  "end": 1\n}\n' >"$2/runs/one.json"
-printf '{\n  "critical_velocity_m_s": 761,\n  "lowest_m_s": 759,\n  "highest_m_s": 766\n}\n' >"$2/summary.json"
+diameter=14 cell=0.5
+while [ $# -gt 0 ]; do
+    case $1 in
+    --out) out=$2 ;;
+    --diameter) diameter=$2 ;;
+    --cell) cell=$2 ;;
+    esac
+    shift
+done
+mkdir -p "$out/runs"
+printf '{\n  "cpu_s": 3,\n  "end": 1\n}\n' >"$out/runs/one.json"
+printf '{\n  "critical_velocity_m_s": 761,\n  "lowest_m_s": 759,\n  "highest_m_s": 766,\n  "options": {
+    "diameter": %s,\n    "cell": %s,\n    "spacing": 0.25,\n    "substrate-diameter": 35,\n    "dt-factor": 0.2,
+    "offsets": 1\n  }\n}\n' "$diameter" "$cell" >"$out/summary.json"
 END
 chmod +x "$dir/build/impact" "$dir/build/critical_velocity"
-results="docs/prediction.md docs/surface.png docs/data/prediction.csv docs/data/prediction_unbonded.csv"
-predict() { (cd "$dir" && : >runs && sh "$top/examples/studies/prediction.sh" 1 2>said); }
+results="docs/prediction.md docs/surface.png docs/data/prediction.csv docs/data/prediction_unbonded.csv
+docs/data/prediction_held_out.csv"
+predict() { (cd "$dir" && : >runs && sh "$top/examples/studies/prediction.sh" 1 2 2>said); }
 runs() { wc -l <"$dir/runs"; }
 ran() { [ "$(runs)" -eq "$1" ] || { echo "$(runs) runs"; false; }; }
-summary=build/predict/unbonded_1_0.25_50_0/summary.json
+summary=build/predict/unbonded_1_0.25_35_0/summary.json
 again() { # sed command, name: after that change of the first summary it is run again, and it alone
     sed "$1" "$dir/$summary" >"$dir/changed"
     check "$2: a change" sh -c "! cmp -s '$dir/$summary' '$dir/changed'"
@@ -40,27 +51,27 @@ again() { # sed command, name: after that change of the first summary it is run 
 }
 # The names of what was there before, kept by a second link: a file written in place changes under both.
 for f in $results; do
-    echo "| cell of before" >"$dir/$f"
+    echo "| diameter of before" >"$dir/$f"
     [ "$f" != docs/prediction.md ] || cp "$dir/docs/page.first" "$dir/$f"
     ln "$dir/$f" "$dir/$f.before"
     cp "$dir/$f" "$dir/$f.copy"
 done
 check "the tables" predict
-check "two unbonded impacts and the picture's" ran 3
+check "eight unbonded impacts, four bonded and the picture's" ran 13
 for f in $results; do
     check "$f is new" sh -c "[ -s '$dir/$f' ] && ! cmp -s '$dir/$f' '$dir/$f.copy'"
     check "... and was not written in place" cmp "$dir/$f.before" "$dir/$f.copy"
 done
-check "the page has its numbers" grep -q '^| 14 | 1 | 0.25 | 1 | 761 | 759 | 766 |' "$dir/docs/prediction.md"
-for page in page.first prediction.md; do sed '/^| cell/,$d' "$dir/docs/$page" >"$dir/$page.text"; done
+check "the page has its numbers" grep -q '^| 14 | 1 | 35 | 0.1 | 1 | 761 | 759 | 766 | 3 |' "$dir/docs/prediction.md"
+for page in page.first prediction.md; do sed '/^| diameter/,$d' "$dir/docs/$page" >"$dir/$page.text"; done
 check "... and its text" cmp "$dir/page.first.text" "$dir/prediction.md.text"
 check "the tables again" predict
 check "... without a run" ran 0
 again 's/"mpm_version": "[^"]*"/"mpm_version": "0.1.9"/' "another version"
-again 's/"dt-factor": 0.2/"dt-factor": 0.25/' "another time step"
-again 's/"substrate-height": 25/"substrate-height": 24/' "another substrate"
+again 's/"cell": 1/"cell": 1.1/' "another grid"
+again 's/"substrate-height": 17.5/"substrate-height": 17/' "another substrate"
 again 's/"bond": "none"/"bond": "energy"/' "another word"
-again 's/"springs": "on"/"springs": "off"/' "another switch"
+again 's/"method": "surface"/"method": "thesis"/' "another method"
 again '$d' "a summary that is cut"
 again 's/^  "options": {/  "others": {/' "no options"
 rm "$dir/build/predict/picture/impact.png"

@@ -26,7 +26,7 @@
        }
 
    CONTENTS
-     rebound and shape     mpm_rebound_of, mpm_rebound_from, mpm_splat_measure
+     rebound and shape     mpm_rebound_of, mpm_rebound_from, mpm_pieces_of, mpm_splat_measure
      the interface         mpm_interface_of
      pulling apart         mpm_grip_apply, mpm_pull_desc_default, mpm_pull_begin, mpm_pull_apply
      literature            mpm_bonded_fraction, mpm_relative_strength, mpm_critical_velocity_*
@@ -52,6 +52,7 @@
 #define mpm_interface_of mpm_interface_of_f32
 #define mpm_rebound_of mpm_rebound_of_f32
 #define mpm_rebound_from mpm_rebound_from_f32
+#define mpm_pieces_of mpm_pieces_of_f32
 #define mpm_splat_measure mpm_splat_measure_f32
 #define mpm_grip_apply mpm_grip_apply_f32
 #define mpm_pull_desc_default mpm_pull_desc_default_f32
@@ -89,14 +90,15 @@ typedef struct mpm_interface {
 /* Between body a and body b (-1: all others). Until the next mpm_locate. Test: 30_bond. */
 MPM_API mpm_interface mpm_interface_of(const mpm_world *w, int32_t a, int32_t b);
 
-/* The rebound of a body (source A, section 5.2). Ejected points, faster than `filter` in any direction, are left out
-   of `filtered` and counted; `mean` is mass-weighted over all points. Along z, retired points included. */
+/* The rebound of a body (source A, section 5.2). Points faster than `filter` in any direction, which source A takes for
+   ejected, are left out of `filtered` and counted; `mean` is mass-weighted over all points. Along z, retired points
+   included. What has left the body is another question: mpm_pieces_of. */
 typedef struct mpm_rebound {
     double filtered;     /* mass-weighted mean v_z of points with |v| <= filter [length/time] */
     double mean;         /* mass-weighted mean v_z */
     double noise;        /* standard deviation of v_z of the points up to the filter */
-    long ejected;        /* points with |v| > filter */
-    double ejected_mass;
+    long fast;           /* points with |v| > filter */
+    double fast_mass;
 } mpm_rebound;
 
 /* filter [length/time] >= 0; body: one of the world's. Test: 30_bond. */
@@ -106,8 +108,19 @@ MPM_API mpm_rebound mpm_rebound_of(const mpm_world *w, int32_t body, mpm_real fi
    where its faces are damped. Test: 30_bond. */
 MPM_API mpm_rebound mpm_rebound_from(const mpm_world *w, int32_t body, int32_t other, mpm_real filter);
 
+/* The pieces that a body has fallen into: points in one cell of the grid, or in cells that touch, be it at a corner,
+   are of one piece. What is not of the heaviest has left the body, however slow or fast. */
+typedef struct mpm_pieces {
+    int32_t pieces;      /* 0: a body without active points */
+    int32_t apart;       /* points that are not of the heaviest piece, retired ones not counted */
+    double mass;         /* theirs */
+} mpm_pieces;
+
+/* MPM_ERR_MEMORY: none for the search, 28 bytes a point at most. Test: 30_bond. */
+MPM_API mpm_status mpm_pieces_of(const mpm_world *w, int32_t body, mpm_pieces *pieces);
+
 /* The shape of a splat: a particle on a substrate whose upper face was flat, along z. Points faster than
-   `filter` are ejected and left out. Extents are those of the points' cubes, half a spacing beyond centres. */
+   `filter` are left out. Extents are those of the points' cubes, half a spacing beyond centres. */
 typedef struct mpm_splat {
     double top;           /* height above which the particle has no point [length] */
     double height, width; /* of the particle; width: twice the largest distance from its initial axis [length] */
@@ -301,8 +314,8 @@ static inline mpm_rebound mpm__rebound(const mpm_world *w, int32_t body, const d
         mass += m;
         r.mean += m * vz;
         if (vx * vx + vy * vy + vz * vz > (double)filter * (double)filter) {
-            r.ejected++;
-            r.ejected_mass += m;
+            r.fast++;
+            r.fast_mass += m;
         } else {
             kept += m;
             r.filtered += m * vz;
@@ -331,6 +344,109 @@ MPM_API mpm_rebound mpm_rebound_from(const mpm_world *w, int32_t body, int32_t o
     int d;
     for (d = 0; d < 3; d++) frame[d] = t.mass > 0 ? t.momentum[d] / t.mass : 0;
     return mpm__rebound(w, body, frame, filter);
+}
+
+/* Cells of a body's points: by chance of their place in `table`, a power of two long, the first point of each cell;
+   -1: none. `parent` leads from point to point of the same piece, up to one that is its own. */
+typedef struct mpm__clusters {
+    const mpm_world *w;
+    const mpm_body *b;
+    int32_t *table, *parent;
+    uint32_t size;
+} mpm__clusters;
+
+static inline void mpm__cluster_cell(const mpm__clusters *q, int32_t point, int32_t *cell)
+{
+    int d;
+    for (d = 0; d < 3; d++) { /* active points lie on the grid, unless somebody has overwritten them */
+        const mpm_real at = (q->w->points.x[d][q->b->first + point] - q->w->desc.origin[d]) / q->w->desc.cell;
+        cell[d] = at >= 0 && at < MPM_R(1e9) ? (int32_t)at : -2;
+    }
+}
+
+/* Where a cell stands in the table, or would. */
+static inline uint32_t mpm__cluster_find(const mpm__clusters *q, const int32_t *cell)
+{
+    uint32_t k = (uint32_t)cell[0] * 73856093u ^ (uint32_t)cell[1] * 19349663u ^ (uint32_t)cell[2] * 83492791u;
+    for (k &= q->size - 1; q->table[k] >= 0; k = (k + 1) & (q->size - 1)) {
+        int32_t other[3];
+        mpm__cluster_cell(q, q->table[k], other);
+        if (other[0] == cell[0] && other[1] == cell[1] && other[2] == cell[2]) break;
+    }
+    return k;
+}
+
+static inline int32_t mpm__cluster_root(const mpm__clusters *q, int32_t point)
+{
+    while (q->parent[point] != point) point = q->parent[point] = q->parent[q->parent[point]];
+    return point;
+}
+
+/* Joins the first point of a cell with those of the cells around. */
+static inline void mpm__cluster_join(const mpm__clusters *q, int32_t point)
+{
+    const int deep = q->w->desc.geometry == MPM_3D;
+    int32_t at[3], cell[3];
+    int i, j, k;
+    mpm__cluster_cell(q, point, at);
+    for (k = -1; k <= 1; k++)
+        for (j = -deep; j <= deep; j++)
+            for (i = -1; i <= 1; i++) {
+                int32_t other;
+                cell[0] = at[0] + i;
+                cell[1] = at[1] + j;
+                cell[2] = at[2] + k;
+                other = q->table[mpm__cluster_find(q, cell)];
+                if (other >= 0) q->parent[mpm__cluster_root(q, other)] = mpm__cluster_root(q, point);
+            }
+}
+
+/* Masses of the pieces, at their roots, and what is not of the heaviest. */
+static inline void mpm__cluster_weigh(const mpm__clusters *q, double *mass, mpm_pieces *r)
+{
+    int32_t i, heaviest = 0;
+    for (i = 0; i < q->b->active; i++) mass[i] = 0;
+    for (i = 0; i < q->b->active; i++)
+        mass[mpm__cluster_root(q, i)] += (double)q->w->points.mass[q->b->first + i];
+    for (i = 0; i < q->b->active; i++) {
+        r->pieces += q->parent[i] == i;
+        if (mass[i] > mass[heaviest]) heaviest = i;
+    }
+    for (i = 0; i < q->b->active; i++) {
+        if (mpm__cluster_root(q, i) == heaviest) continue;
+        r->apart++;
+        r->mass += (double)q->w->points.mass[q->b->first + i];
+    }
+}
+
+MPM_API mpm_status mpm_pieces_of(const mpm_world *w, int32_t body, mpm_pieces *r)
+{
+    mpm__clusters q;
+    double *mass;
+    int32_t i, n;
+    uint32_t k;
+    memset(r, 0, sizeof *r);
+    q.w = w;
+    q.b = &w->body[body];
+    n = q.b->active;
+    for (q.size = 16; q.size < 2 * (uint32_t)n; q.size *= 2) continue;
+    mass = (double *)MPM_MALLOC((size_t)n * (sizeof *mass + sizeof *q.parent) + q.size * sizeof *q.table);
+    if (!mass) return MPM_ERR_MEMORY;
+    q.parent = (int32_t *)(mass + n);
+    q.table = q.parent + n;
+    for (k = 0; k < q.size; k++) q.table[k] = -1;
+    for (i = 0; i < n; i++) {
+        int32_t cell[3];
+        mpm__cluster_cell(&q, i, cell);
+        k = mpm__cluster_find(&q, cell);
+        if (q.table[k] < 0) q.table[k] = i;
+        q.parent[i] = q.table[k];
+    }
+    for (k = 0; k < q.size; k++)
+        if (q.table[k] >= 0) mpm__cluster_join(&q, q.table[k]);
+    if (n > 0) mpm__cluster_weigh(&q, mass, r);
+    MPM_FREE(mass);
+    return MPM_OK;
 }
 
 /* 1 if a point is slower than `filter`. */

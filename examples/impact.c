@@ -83,11 +83,13 @@ static int write_summary(const impact *s, const impact_result *r, const output *
     mpm_io_json_number(&j, "interface_dissipation_J_m2", r->meeting.dissipated);
     mpm_io_json_number(&j, "interface_adhesion_pJ", r->meeting.adhesion);
     mpm_io_json_number(&j, "ejected_mass_fraction", r->ejected_fraction);
+    mpm_io_json_number(&j, "fast_mass_fraction", r->fast_fraction);
     mpm_io_json_number(&j, "eps_mean", r->particle.plastic_strain_mean);
     mpm_io_json_number(&j, "plastic_energy_density_mean_MPa", r->particle.plastic_work_mean);
     mpm_io_json_number(&j, "temperature_max_K", r->all.temperature_max);
     mpm_io_json_integer(&j, "points", r->all.points);
-    mpm_io_json_integer(&j, "ejected_points", r->rebound.ejected);
+    mpm_io_json_integer(&j, "ejected_points", r->pieces.apart);
+    mpm_io_json_integer(&j, "fast_points", r->rebound.fast);
     mpm_io_json_integer(&j, "retired_points", w->retired);
     mpm_io_json_integer(&j, "steps", w->steps);
     mpm_io_json_number(&j, "dt_ns", (double)s->dt * 1e3);
@@ -148,8 +150,8 @@ static void print_table(const impact *s, const impact_case *c, const impact_resu
         printf("  dissipated at the interface     %10.1f J/m2  adhesion %.1f J/m2 where bonded\n",
                r->meeting.dissipated, case_share(r->meeting.adhesion, r->meeting.bonded));
     printf("  highest temperature             %10.1f K\n", r->all.temperature_max);
-    printf("  points ejected, retired         %10ld, %lld of %ld\n", r->rebound.ejected, (long long)w->retired,
-           r->all.points);
+    printf("  points ejected, retired         %10ld, %lld of %ld; %ld faster than 60 m/s\n", (long)r->pieces.apart,
+           (long long)w->retired, r->all.points, r->rebound.fast);
     printf("  energy: kinetic                 %10.3f %%    plastic work %.3f %%, elastic %.3f %%\n",
            100 * case_share(r->all.kinetic, start), 100 * case_share(r->all.plastic, start),
            100 * case_share(r->all.internal - s->start.internal - r->all.plastic, start));

@@ -443,7 +443,9 @@ typedef struct impact_result {
     double crater;                                     /* see mpm_splat */
     double contact_area, bonded_area;                  /* of the whole particle: see mpm_bond_measure */
     mpm_meeting meeting;                               /* of contact on surfaces */
-    double ejected_fraction;                           /* of the particle's mass, faster than 60 m/s */
+    double fast_fraction;                              /* of the particle's mass, faster than 60 m/s */
+    mpm_pieces pieces;                                 /* of the particle: what has left it */
+    double ejected_fraction;                           /* of its mass */
     double mass_error, momentum_error, energy_error;   /* relative; energy: kinetic + internal + absorbed */
     double energy_unaccounted;                         /* the same with contact and bond losses */
 } impact_result;
@@ -490,7 +492,9 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
         r.bonded_area = r.meeting.bonded;
         r.bond.pbcp = r.particle_bond.pbcp = 100 * case_share(r.meeting.bonded, r.meeting.touched);
     }
-    r.ejected_fraction = r.rebound.ejected_mass / r.particle.mass;
+    r.fast_fraction = r.rebound.fast_mass / r.particle.mass;
+    mpm_pieces_of(w, IMPACT_PARTICLE, &r.pieces); /* without memory: none */
+    r.ejected_fraction = r.pieces.mass / r.particle.mass;
     energy = s->start.kinetic + s->start.internal;
     r.mass_error = (r.all.mass - s->start.mass) / s->start.mass;
     for (a = w->desc.geometry == MPM_AXISYMMETRIC ? 2 : 0; a < 3; a++) { /* hoop stress makes radial momentum */

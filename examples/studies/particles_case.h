@@ -259,7 +259,7 @@ static inline void particles_report(const impact *s, const particles_case *q, pa
         r[a].v_along = hypot(v[0] - still[0], v[1] - still[1]);
         r[a].fate = particles_fate(r[a].v_z, r[a].v_along, linked[a]);
         r[a].ejected = r[a].fate == PARTICLE_ARRIVING
-                           ? 0 : mpm_rebound_of(w, a, 60).ejected_mass / mpm_body_totals(w, a).mass;
+                           ? 0 : mpm_rebound_of(w, a, 60).fast_mass / mpm_body_totals(w, a).mass;
     }
 }
 

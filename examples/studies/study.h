@@ -244,7 +244,7 @@ static inline double study_median_radius(const mpm_world *w, double floor)
 static inline int study_leaves(const mpm_world *w)
 {
     const mpm_rebound r = mpm_rebound_of(w, IMPACT_PARTICLE, 60);
-    return r.filtered > 5 || r.ejected_mass > 0.5 * mpm_body_totals(w, IMPACT_PARTICLE).mass;
+    return r.filtered > 5 || r.fast_mass > 0.5 * mpm_body_totals(w, IMPACT_PARTICLE).mass;
 }
 
 /* What is watched while a case runs: the bond, and the particle's way. */
@@ -311,7 +311,7 @@ static inline void study_measure(const impact *run, const impact_case *c, const 
     value[STUDY_PBCP] = r.bond.pbcp;
     value[STUDY_ABP] = r.bond.abp;
     value[STUDY_CONTACTED] = (double)r.bond.contacted;
-    value[STUDY_V_REST] = r.ejected_fraction > 0.5 ? r.relative : r.filtered_relative;
+    value[STUDY_V_REST] = r.fast_fraction > 0.5 ? r.relative : r.filtered_relative;
     value[STUDY_V_MEAN] = r.relative;
     value[STUDY_V_LATE] = study_late(k, w, r.relative);
     value[STUDY_DRIFT] = r.substrate_drift;
@@ -321,7 +321,7 @@ static inline void study_measure(const impact *run, const impact_case *c, const 
     value[STUDY_EPS] = r.particle.plastic_strain_mean;
     value[STUDY_WORK] = r.particle.plastic_work_mean;
     value[STUDY_T_MAX] = r.all.temperature_max;
-    value[STUDY_EJECTED] = r.ejected_fraction;
+    value[STUDY_EJECTED] = r.fast_fraction;
     value[STUDY_RIM] = mpm_splat_measure(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE, 60).rim;
     value[STUDY_SHEARED] = study_sheared(w, 3) / r.particle.mass;
     value[STUDY_R_CONTACT] = study_median_radius(w, 1e-12);

@@ -53,6 +53,7 @@ static inline void scene_measure(scene *s, int files)
 {
     mpm_world *w = &s->world;
     mpm_bond_measure m;
+    mpm_pieces apart;
     mpm_draw_canvas canvas;
     mpm_draw_cut_desc cut = mpm_draw_cut_of(w, w->points.temperature);
     mpm_fault fault;
@@ -62,6 +63,7 @@ static inline void scene_measure(scene *s, int files)
     mpm_io_world_text(text, sizeof text, w);
     if (w->bodies < 2) return;
     mpm_rebound_of(w, 0, 60);
+    mpm_pieces_of(w, 0, &apart);
     mpm_rebound_from(w, 0, 1, 60);
     mpm_splat_measure(w, 0, 1, 1000);
     mpm_interface_of(w, 0, -1);

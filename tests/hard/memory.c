@@ -13,6 +13,7 @@ static void *hard_malloc(size_t n) { return ++count == failing ? NULL : malloc(n
 #include "mpm.h"
 #include "mpm_draw.h"
 #include "mpm_io.h"
+#include "mpm_measure.h"
 #include "mpm_spray.h"
 #include "mpm_surface.h"
 
@@ -41,6 +42,7 @@ static void world(void)
     mpm_real x[2] = {MPM_R(1.2), MPM_R(1.4)};
     mpm_draw_canvas c;
     mpm_draw_cut_desc cut;
+    mpm_pieces pieces;
     mpm_fault fault;
     mpm_cloud cloud;
     mpm_world w;
@@ -67,6 +69,7 @@ static void world(void)
     want(field >= 0, "mpm_field_take, twice");
     for (i = 0; i < w.points.count; i++) w.points.v[i % 3][i] += (mpm_real)(i % 7) - 3; /* apart: more and more nodes */
     for (i = 0; i < 20; i++) TRY(mpm_step(&w, MPM_R(0.02)));
+    TRY(mpm_pieces_of(&w, 0, &pieces));
     cut = mpm_draw_cut_of(&w, NULL);
     cut.at = 4;
     TRY(mpm_draw_cuts(&c, &cut, 1, 1, 120, &fault));

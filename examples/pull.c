@@ -59,6 +59,41 @@ static mpm_status describe(mpm_pull *p, const impact *s, const impact_case *c, c
     return mpm_pull_begin(p, &s->world, &d, fault);
 }
 
+/* How the bodies meet: at nodes, or on their surfaces, where what once touched is the area. */
+static mpm_interface meet(const impact *s)
+{
+    mpm_interface r;
+    mpm_meeting m;
+    if (s->surfaces.surfaces == 0) return mpm_interface_of(&s->world, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
+    m = mpm_surface_meets(&s->surfaces, &s->world, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
+    memset(&r, 0, sizeof r);
+    r.area = m.touched;
+    r.bonded_area = m.bonded;
+    r.nodes = m.bonded > 0 || m.area > 0;
+    r.bonded = m.bonded > 0;
+    r.held = s->world.held > 0;
+    return r;
+}
+
+/* Contact of this step on the grid; the bond is made, mpm_bond_grow is left out. What it draws at goes to the pull. */
+static mpm_status hold(impact *s, mpm_pull *p)
+{
+    mpm_world *w = &s->world;
+    mpm_meeting m;
+    if (s->surfaces.surfaces > 0) {
+        if (mpm_surface_contact(&s->surfaces, w) < 0) return (w->fault = s->surfaces.fault).status;
+        m = mpm_surface_meets(&s->surfaces, w, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
+        p->sum[0] -= (m.force[2] + m.pull[2]) * (double)s->dt;
+        mpm_grid_update(w);
+        return MPM_OK;
+    }
+    mpm_grid_update(w);
+    mpm_contact_find(w);
+    mpm_bond_nodes(&s->bond, w);
+    mpm_contact_apply(w);
+    return MPM_OK;
+}
+
 /* Draws the bodies apart until they have parted or the way is done, a row of the table per sample. */
 static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, curve *c)
 {
@@ -69,12 +104,9 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
         if (mpm_locate(w, s->dt) < 0) return report(&w->fault, "locate");
         mpm_p2g(w);
         mpm_forces(w);
-        mpm_grid_update(w);
-        mpm_contact_find(w);
-        mpm_bond_nodes(&s->bond, w); /* without mpm_bond_grow: the bond is made */
-        mpm_contact_apply(w);
+        if (hold(s, p) < 0) return report(&w->fault, "contact");
         if (mpm_pull_apply(p, w)) { /* the grips give their nodes their velocity */
-            met = mpm_interface_of(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
+            met = meet(s);
             c->separation[c->count] = (mpm_real)p->separation;
             c->stress[c->count++] = (mpm_real)(p->force / p->desc.area);
             mpm_io_csv_real(table, (mpm_real)(p->time * 1e3));
@@ -90,6 +122,8 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
         mpm_g2p(w);
         mpm_musl(w);
         if (mpm_stress(w) < 0) return report(&w->fault, "stress");
+        if (s->surfaces.surfaces > 0 && mpm_surface_move(&s->surfaces, w) < 0)
+            return report(&s->surfaces.fault, "surfaces");
         mpm_move(w);
     } while (p->separation < o->distance && c->count < c->room);
     return 1;
@@ -181,7 +215,7 @@ static int run(impact *s, const impact_case *ic, const pull_case *o, curve *c, c
     while (s->world.steps < s->steps)
         if (impact_step(s) < 0) return report(&s->world.fault, "impact");
     r = impact_measure(s, ic);
-    met = mpm_interface_of(&s->world, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
+    met = meet(s);
     memset(&p, 0, sizeof p);
     snprintf(grip, sizeof grip, "--grip %g, which leaves nothing to draw at", o->grip);
     if (met.area > 0 && describe(&p, s, ic, o, &met, &fault) != MPM_OK) return report(&fault, grip);
@@ -221,8 +255,10 @@ static int carry_out(int argc, char **argv)
     option_add(options, &n, "out", OPTION_TEXT, &o.folder, "output folder");
     option_add(options, &n, "quiet", OPTION_FLAG, &o.quiet, "print nothing");
     c.geometry = "axisymmetric";
-    c.cell = 1;
-    c.spacing = 0.25;
+    if (!surface) {
+        c.cell = 1;
+        c.spacing = 0.25;
+    }
     parsed = options_parse(argc, argv, "A metal particle hits a plate and is drawn off it again: the bond's strength.",
                            options, n);
     if (parsed) return parsed < 0 ? 1 : 0;

@@ -222,6 +222,15 @@ static void example(void)
     CHECK_TRUE("... a contact of the particle's size", area > 50 && area < 400);
     CHECK_EQUAL("without bond", pull("--time 80 --distance 0.4 --dt-factor 0.2 --bond none"), 0);
     CHECK_NEAR("... nothing", number_in(summary, "strength_MPa"), 0, 0);
+    CHECK_EQUAL("on surfaces", pull("--method surface --adhesion-critical 1000 --pull-velocity 10 --sample 2"), 0);
+    stress = number_in(summary, "strength_MPa");
+    area = number_in(summary, "bonded_node_area_um2") / number_in(summary, "contact_area_um2");
+    CHECK_TRUE("... adhesion bears something", stress > 5);
+    CHECK_TRUE("... on a part of what touched", area > 0.1 && area < 1);
+    CHECK_TRUE("... and lets go when it is drawn open", number_in(summary, "end_way_um") < 1);
+    CHECK_NEAR("... all of it", number_in(summary, "end_stress_MPa") / stress, 0, 0.05);
+    force = number_in(summary, "work_pJ") / (number_in(summary, "peak_force_uN") * 0.2);
+    CHECK_TRUE("... at the cost of its force over its reach, about", force > 0.4 && force < 1.4);
     CHECK_TRUE("no cap to grip", pull("--time 1 --grip -1") != 0);
     CHECK_TRUE("... is named", strstr(text_of("build/tests/pull.out"), "--grip -1") != NULL);
     CHECK_TRUE("no sample", pull("--time 1 --sample 0") != 0);

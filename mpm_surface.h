@@ -182,8 +182,8 @@ typedef struct mpm_surfaces {
     int walls;
     int64_t steps;        /* since the first */
     int32_t *bucket, *next; /* search: first face or marker of a cell, next one of the same */
-    int32_t *near;          /* what was found close to a place */
-    int32_t buckets, bucket_room, nexts, near_room;
+    int32_t *around;        /* what was found close to a place */
+    int32_t buckets, bucket_room, nexts, around_room;
     mpm_fault fault;
 } mpm_surfaces;
 
@@ -328,10 +328,10 @@ MPM_API void mpm_surfaces_free(mpm_surfaces *s)
     mpm__surface_release(s->surface);
     mpm__surface_release(s->bucket);
     mpm__surface_release(s->next);
-    mpm__surface_release(s->near);
+    mpm__surface_release(s->around);
     s->surface = NULL;
-    s->bucket = s->next = s->near = NULL;
-    s->surfaces = s->capacity = s->buckets = s->bucket_room = s->nexts = s->near_room = 0;
+    s->bucket = s->next = s->around = NULL;
+    s->surfaces = s->capacity = s->buckets = s->bucket_room = s->nexts = s->around_room = 0;
     s->walls = 0;
     s->steps = 0;
 }
@@ -385,9 +385,9 @@ static inline int32_t mpm__surface_buckets(mpm_surfaces *s, int32_t n, int32_t m
     s->next = (int32_t *)p;
     for (i = 0; i < buckets; i++) s->bucket[i] = -1;
     s->buckets = buckets;
-    p = mpm__surface_room(s->near, &s->near_room, 0, m, sizeof s->near[0]);
+    p = mpm__surface_room(s->around, &s->around_room, 0, m, sizeof s->around[0]);
     if (!p) return 0;
-    s->near = (int32_t *)p;
+    s->around = (int32_t *)p;
     return buckets;
 }
 
@@ -477,14 +477,14 @@ static inline void mpm__surface_measure(const mpm_world *w, mpm_surface *c)
         for (d = 0; d < 3; d++) c->marker[i].normal[d] = 0;
     }
     for (i = 0; i < c->faces; i++) {
-        mpm_real vector[3], ring[3], sum = 0, part;
-        mpm__surface_vector(c, i, vector);
+        mpm_real out[3], ring[3], sum = 0, part;
+        mpm__surface_vector(c, i, out);
         for (k = 0; k < n; k++) sum += ring[k] = mpm__surface_ring(w, c->marker[c->face[i][k]].x[0]);
-        part = mpm__surface_length(vector) / (mpm_real)(n * (n + 1));
+        part = mpm__surface_length(out) / (mpm_real)(n * (n + 1));
         for (k = 0; k < n; k++) {
             mpm_marker *m = &c->marker[c->face[i][k]];
             m->area += part * (ring[k] + sum);
-            for (d = 0; d < 3; d++) m->normal[d] += vector[d];
+            for (d = 0; d < 3; d++) m->normal[d] += out[d];
         }
     }
     for (i = 0; i < c->markers; i++) {
@@ -724,11 +724,11 @@ static inline void mpm__surface_place(const mpm_surface *c, int markers, int32_t
 /* The cell of x; what lies far off the grid is in its last, on either side. */
 static inline void mpm__surface_cell(const mpm_world *w, const mpm_real *x, int32_t *cell)
 {
-    const mpm_real far = MPM_R(1e9);
+    const mpm_real most = MPM_R(1e9);
     int d;
     for (d = 0; d < 3; d++) {
         const mpm_real at = (x[d] - w->desc.origin[d]) / w->desc.cell + 8;
-        cell[d] = at > far ? (int32_t)far : at > -far ? (int32_t)at : -(int32_t)far;
+        cell[d] = at > most ? (int32_t)most : at > -most ? (int32_t)at : -(int32_t)most;
     }
 }
 
@@ -756,8 +756,8 @@ static inline mpm_status mpm__surface_sort(mpm_surfaces *s, const mpm_world *w, 
     return MPM_OK;
 }
 
-/* Those of a surface that lie within `range` cells of the cell of x: numbers to s->near, each once. From the buckets of
-   these cells, or, where the cells are more than the faces or markers, by looking at all of those. */
+/* Those of a surface that lie within `range` cells of the cell of x: numbers to s->around, each once. From the buckets
+   of these cells, or, where the cells are more than the faces or markers, by looking at all of those. */
 static inline int32_t mpm__surface_around(mpm_surfaces *s, const mpm_world *w, const mpm_surface *c, int markers,
                                           const mpm_real *x, int32_t range)
 {
@@ -770,7 +770,7 @@ static inline int32_t mpm__surface_around(mpm_surfaces *s, const mpm_world *w, c
         mpm__surface_place(c, markers, i, place);
         mpm__surface_cell(w, place, cell);
         for (ix = 0; ix < 3 && cell[ix] >= at[ix] - range && cell[ix] <= at[ix] + range; ix++) continue;
-        if (ix == 3) s->near[n++] = i;
+        if (ix == 3) s->around[n++] = i;
     }
     if (cells > all) return n;
     for (iz = at[2] - range; iz <= at[2] + range; iz++)
@@ -779,7 +779,7 @@ static inline int32_t mpm__surface_around(mpm_surfaces *s, const mpm_world *w, c
                 for (i = s->bucket[mpm__surface_bucket(s, ix, iy, iz)]; i >= 0; i = s->next[i]) {
                     mpm__surface_place(c, markers, i, place);
                     mpm__surface_cell(w, place, cell);
-                    if (cell[0] == ix && cell[1] == iy && cell[2] == iz) s->near[n++] = i;
+                    if (cell[0] == ix && cell[1] == iy && cell[2] == iz) s->around[n++] = i;
                 }
     return n;
 }
@@ -808,14 +808,14 @@ static inline mpm__foot mpm__layer_foot(mpm_surfaces *s, const mpm_world *w, con
     int k, d;
     memset(&foot, 0, sizeof foot);
     for (i = 0; i < n; i++) {
-        square = mpm__surface_nearest(c, s->near[i], x, share);
+        square = mpm__surface_nearest(c, s->around[i], x, share);
         if (!(square < nearest)) continue;
         nearest = square;
         foot.within = 1;
-        mpm__surface_vector(c, s->near[i], foot.normal);
+        mpm__surface_vector(c, s->around[i], foot.normal);
         for (d = 0; d < 3; d++)
             for (k = 0, foot.x[d] = 0; k < c->corners; k++)
-                foot.x[d] += share[k] * c->marker[c->face[s->near[i]][k]].x[d];
+                foot.x[d] += share[k] * c->marker[c->face[s->around[i]][k]].x[d];
     }
     return foot;
 }
@@ -838,8 +838,8 @@ static inline void mpm__layer_near(mpm_surfaces *s, const mpm_world *w, mpm_surf
     const int32_t n = mpm__surface_around(s, w, c, 1, foot->x, mpm__layer_range(s, w));
     int32_t i;
     for (i = 0; i < n; i++) {
-        const mpm_real part = mpm__layer_weight(&c->marker[s->near[i]], foot, s->depth);
-        int32_t *end = &c->layer.begin[s->near[i] + 1];
+        const mpm_real part = mpm__layer_weight(&c->marker[s->around[i]], foot, s->depth);
+        int32_t *end = &c->layer.begin[s->around[i] + 1];
         if (!(part > 0)) continue;
         if (write) {
             c->layer.point[*end] = number;
@@ -1030,10 +1030,10 @@ static inline void mpm__surface_open(const mpm_world *w, mpm_surface *c)
     const mpm_body_desc *b = &w->body[c->body].desc;
     int32_t i, n = 0;
     for (i = 0; i < c->faces; i++) {
-        mpm_real vector[3], up, area;
-        mpm__surface_vector(c, i, vector);
-        area = mpm__surface_length(vector);
-        up = area > 0 ? vector[2] / area : 0;
+        mpm_real out[3], up, area;
+        mpm__surface_vector(c, i, out);
+        area = mpm__surface_length(out);
+        up = area > 0 ? out[2] / area : 0;
         if (b->absorb & MPM_FACE_BOTTOM && up < MPM_R(-0.9)) continue;
         if (b->absorb & MPM_FACE_RIM && up > MPM_R(-0.1) && up < MPM_R(0.1)) continue;
         mpm__surface_face(c, n++, c->face[i][0], c->face[i][1], c->face[i][2]);
@@ -1536,7 +1536,7 @@ static inline void mpm__surface_search(mpm_surfaces *s, const mpm_world *w, int3
         found.face = -1;
         for (d = 0; d < 3; d++) apart |= m->x[d] < low[d] || m->x[d] > high[d];
         if (!apart) n = mpm__surface_around(s, w, other, 0, m->x, 1);
-        for (k = 0; k < n; k++) mpm__surface_try(other, s->near[k], m, &found, &nearest);
+        for (k = 0; k < n; k++) mpm__surface_try(other, s->around[k], m, &found, &nearest);
         meet = mpm__surface_meet(m, b, found.face >= 0);
         if (!meet || (found.face < 0 && meet->touched)) continue; /* what once touched is kept: its G is asked for */
         if (found.face < 0) meet->other = MPM_SURFACE_NONE;

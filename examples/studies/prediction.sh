@@ -75,7 +75,7 @@ plan() {
     echo "critical critical_14_middle --cell 0.7 --offsets $positions"
     echo "critical critical_14_wide --substrate-diameter 50 --substrate-height 25 --offsets $(((positions + 3) / 4))"
     echo "critical critical_14_steps --dt-factor 0.1 --offsets $(((positions + 3) / 4))"
-    echo "impact picture --frames 1"
+    echo "impact picture --frames 1 --velocity 840"
     for o in $outs; do
         d=${o%%_*} v=${o#*_} v=${v%%_*}
         for part in $(each "$positions"); do

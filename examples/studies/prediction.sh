@@ -65,6 +65,9 @@ outs="45_550_rebounds 38_780_bonds 22_752_rebounds 22_1066_bonds" # um, m/s, mea
 grid() { # cell_spacing_substrate: as options
     echo "$1" | awk -F_ '{ printf "--cell %s --spacing %s --substrate-diameter %s --substrate-height %s", $1, $2, $3, $3 / 2 }'
 }
+many() { # positions on a grid: eight, on the wide substrate two
+    case $1 in *_50) echo $(((positions + 1) / 2)) ;; *) echo $((2 * positions)) ;; esac
+}
 each() { # offsets of the grid, as parts of a cell
     awk -v n="$1" 'BEGIN { for (k = 0; k < n; k++) printf "%g ", k / n }'
 }
@@ -83,7 +86,7 @@ plan() {
         done
     done
     for g in $grids; do
-        for part in $(each $((2 * positions))); do
+        for part in $(each "$(many "$g")"); do
             echo "impact unbonded_${g}_$part --bond none --frames 0 $(grid "$g") --grid-offset $(product "$part" "${g%%_*}")"
         done
     done
@@ -95,7 +98,7 @@ plan | xargs -P "$jobs" -L 1 sh "$0" --one
 {
     echo "cell_um,spacing_um,substrate_um,part_of_cell,rebound_m_s,mean_strain,contact_fraction,energy_unaccounted,noise_m_s,cpu_s"
     for g in $grids; do
-        for part in $(each $((2 * positions))); do
+        for part in $(each "$(many "$g")"); do
             s=$out/unbonded_${g}_$part/summary.json
             echo "$(echo "$g" | tr _ ,),$part,$(value "$s" v_rest_relative_m_s),$(value "$s" eps_mean),$(value "$s" energy_contact_fraction),$(value "$s" energy_unaccounted),$(value "$s" v_noise_m_s),$(value "$s" cpu_seconds)"
         done

@@ -1846,8 +1846,10 @@ MPM_API mpm_status mpm_surface_move(mpm_surfaces *s, mpm_world *w)
         for (i = 0; i < c->markers; i++) {
             mpm_marker *m = &c->marker[i];
             if (mpm__surface_support(s, w, c->body, m->x, &at)) {
-                const double work = mpm_support_work(w, &at, m->force);
-                const double pulled = s->adhesion > 0 ? mpm_support_work(w, &at, m->pull) : 0;
+                const int pressed = mpm__surface_dot(m->force, m->force) > 0;
+                const int drawn = mpm__surface_dot(m->pull, m->pull) > 0;
+                const double work = pressed ? mpm_support_work(w, &at, m->force) : 0;
+                const double pulled = drawn ? mpm_support_work(w, &at, m->pull) : 0;
                 w->ledger.walls += work + pulled; /* where mpm_push has booked it */
                 w->ledger.contact -= work;
                 w->ledger.hold -= pulled;

@@ -139,6 +139,9 @@ typedef double mpm_real;
 #define mpm_wave_speed_s mpm_wave_speed_s_f32
 #define mpm_time_step mpm_time_step_f32
 #define mpm_step mpm_step_f32
+#define mpm_to_nodes mpm_to_nodes_f32
+#define mpm_to_points mpm_to_points_f32
+#define mpm_stress_and_move mpm_stress_and_move_f32
 #define mpm_locate mpm_locate_f32
 #define mpm_p2g mpm_p2g_f32
 #define mpm_forces mpm_forces_f32
@@ -222,6 +225,14 @@ typedef struct mpm_fault {
 
 #define MPM_PI MPM_R(3.14159265358979323846)
 #define MPM_ALIGN 64 /* bytes: of what mpm_carve hands out */
+
+/* What must be inlined to be fast: into loops that are to be done several points at a time, or with the support of
+   the shape function and the geometry, passed as constants, into specialised code. */
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(MPM_NO_INLINE)
+#define MPM__KERNEL static inline __attribute__((always_inline))
+#else
+#define MPM__KERNEL static inline
+#endif
 
 /* mpm_sqrt(x), mpm_exp(x), ...: libm in mpm_real. */
 #define MPM_MATH_LIST(X) X(sqrt) X(cbrt) X(exp) X(expm1) X(log) X(erf) X(tanh) X(fabs)
@@ -859,6 +870,16 @@ MPM_API mpm_status mpm_stress(mpm_world *w);
    level k. Test: 20_method, 71_step. */
 MPM_API void mpm_move(mpm_world *w);
 
+/* ---- two phases in one sweep ---------------------------------------------------------------- */
+
+/* Phases that follow each other, with one reading of the points and their weights for both: the same bits as one after
+   the other, faster. Test: 71_step. */
+MPM_API void mpm_to_nodes(mpm_world *w);               /* mpm_p2g and mpm_forces */
+MPM_API void mpm_to_points(mpm_world *w);              /* mpm_g2p and mpm_musl */
+
+/* mpm_stress and mpm_move. On an error of mpm_stress, which it returns, some points have been moved. */
+MPM_API mpm_status mpm_stress_and_move(mpm_world *w);
+
 /* ---- between the phases: what extensions use ------------------------------------------------ */
 
 #define MPM_SUPPORT 64 /* most nodes a point touches: cubic splines in three dimensions */
@@ -983,15 +1004,8 @@ MPM_API const char *mpm_version(void);
 #define MPM_BLOCK 64
 #endif
 
-/* Inlining turns the support of the shape function and the geometry, passed as constants, into
-   specialised code: one source for every basis, 3D, plane strain and axisymmetry. */
-#if (defined(__GNUC__) || defined(__clang__)) && !defined(MPM_NO_INLINE)
-#define MPM__KERNEL static inline __attribute__((always_inline))
-#else
-#define MPM__KERNEL static inline
-#endif
-
 #define MPM__LANES 32   /* points of a run treated together */
+#define MPM__WIDE 8     /* ... of which so many side by side, in loops without a rest */
 #ifdef MPM_FLOAT
 #define MPM__HAIR MPM_R(1e-5) /* cells; see mpm__weights_axis */
 #else
@@ -1015,17 +1029,13 @@ MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt)
 {
     mpm_status s = mpm_locate(w, dt), stressed;
     if (s < 0) return s;
-    mpm_p2g(w);
-    mpm_forces(w);
+    mpm_to_nodes(w);      /* mpm_p2g, mpm_forces */
     mpm_grid_update(w);
     mpm_contact_find(w);
     mpm_contact_apply(w);
-    mpm_g2p(w);
-    mpm_musl(w);
-    stressed = mpm_stress(w);
-    if (stressed < 0) return stressed;
-    mpm_move(w);
-    return s;
+    mpm_to_points(w);     /* mpm_g2p, mpm_musl */
+    stressed = mpm_stress_and_move(w); /* mpm_stress, mpm_move */
+    return stressed < 0 ? stressed : s;
 }
 
 static inline int mpm__flat(const mpm_desc *d) { return d->geometry != MPM_3D; }
@@ -1049,47 +1059,73 @@ typedef struct mpm__weights {
     mpm_real dN[3][4][MPM__LANES];
 } mpm__weights;
 
-/* One direction: t is the distance from the base node in cells, l the half size of a GIMP point in
-   cells. k = 2: the linear hat, 1 - |e| at e cells from the node (A 3.20). k = 3: the hat averaged over the point
-   (uGIMP): 1 - (e^2 + l^2)/(2 l) for |e| < l, 1 - |e| up to 1 - l, (1 + l - |e|)^2/(4 l) up to 1 + l; over a whole
-   cell, l = 1/2, it is the quadratic B-spline. k = 4: the cubic one, 2/3 - e^2 + |e|^3/2 for |e| < 1,
-   (2 - |e|)^3/6 up to 2. */
+/* One direction: t is the distance from the base node in cells, n a multiple of MPM__WIDE. The linear hat, 1 - |e| at e
+   cells from the node (A 3.20). A point on a grid plane would give its far node a gradient but no mass, hence no
+   velocity: it is kept a hair's breadth inside. */
+MPM__KERNEL void mpm__hats(mpm__weights *s, int axis, int n, const mpm_real *t, mpm_real inv)
+{
+    int p;
+    for (p = 0; p < n; p++) {
+        const mpm_real in = t[p] > MPM__HAIR ? t[p] : MPM__HAIR, u = in < 1 - MPM__HAIR ? in : 1 - MPM__HAIR;
+        s->N[axis][0][p] = 1 - u;
+        s->N[axis][1][p] = u;
+        s->dN[axis][0][p] = -inv;
+        s->dN[axis][1][p] = inv;
+    }
+}
+
+/* The hat averaged over a point of half size l cells (uGIMP): 1 - (e^2 + l^2)/(2 l) for |e| < l, 1 - |e| up to 1 - l,
+   (1 + l - |e|)^2/(4 l) up to 1 + l; over a whole cell, l = 1/2, it is the quadratic B-spline. */
+static inline void mpm__averaged_hats(mpm__weights *s, int axis, int n, const mpm_real *t, mpm_real l, mpm_real inv)
+{
+    const mpm_real half = 1 / (2 * l), quarter = half / 2, steep = inv / l;
+    int p, i;
+    for (i = 0; i < 3; i++)
+        for (p = 0; p < n; p++) {
+            const mpm_real e = t[p] - (mpm_real)i, a = e < 0 ? -e : e, sign = e < 0 ? inv : -inv;
+            const mpm_real reach = 1 + l - a > 0 ? 1 + l - a : 0;
+            const mpm_real outer = reach * reach * quarter, inner = 1 - (e * e + l * l) * half;
+            const mpm_real douter = sign * reach * half, dinner = -e * steep;
+            s->N[axis][i][p] = a < l ? inner : (a <= 1 - l ? 1 - a : outer);
+            s->dN[axis][i][p] = a < l ? dinner : (a <= 1 - l ? sign : douter);
+        }
+}
+
+/* The cubic B-spline, 2/3 - e^2 + |e|^3/2 for |e| < 1, (2 - |e|)^3/6 up to 2. */
+static inline void mpm__cubics(mpm__weights *s, int axis, int n, const mpm_real *t, mpm_real inv)
+{
+    const mpm_real sixth = MPM_R(1.0) / 6, two_thirds = MPM_R(2.0) / 3, half = inv / 2;
+    int p;
+    for (p = 0; p < n; p++) { /* t - 1 and 2 - t are the distances from the two inner nodes */
+        const mpm_real u = t[p] - 1, v = 2 - t[p];
+        s->N[axis][0][p] = v * v * v * sixth;
+        s->N[axis][1][p] = two_thirds - u * u * (1 - u / 2);
+        s->N[axis][2][p] = two_thirds - v * v * (1 - v / 2);
+        s->N[axis][3][p] = u * u * u * sixth;
+        s->dN[axis][0][p] = -half * v * v;
+        s->dN[axis][1][p] = -inv * u * (2 - MPM_R(1.5) * u);
+        s->dN[axis][2][p] = inv * v * (2 - MPM_R(1.5) * v);
+        s->dN[axis][3][p] = half * u * u;
+    }
+}
+
+/* The direction that two dimensions have not. */
+static inline void mpm__ones(mpm__weights *s, int axis, int n)
+{
+    int p;
+    for (p = 0; p < n; p++) {
+        s->N[axis][0][p] = 1;
+        s->dN[axis][0][p] = 0;
+    }
+}
+
 MPM__KERNEL void mpm__weights_axis(mpm__weights *s, int axis, int k, const mpm_real *t, mpm_real l, mpm_real inv)
 {
-    int p, i;
-    for (p = 0; p < s->n; p++) {
-        if (k == 1) {
-            s->N[axis][0][p] = 1;
-            s->dN[axis][0][p] = 0;
-        } else if (k == 2) {
-            /* A point on a grid plane would give its far node a gradient but no mass, hence no
-               velocity: keep it a hair's breadth inside. */
-            const mpm_real in = t[p] > MPM__HAIR ? t[p] : MPM__HAIR, u = in < 1 - MPM__HAIR ? in : 1 - MPM__HAIR;
-            s->N[axis][0][p] = 1 - u;
-            s->N[axis][1][p] = u;
-            s->dN[axis][0][p] = -inv;
-            s->dN[axis][1][p] = inv;
-        } else if (k == 4) { /* t - 1 and 2 - t are the distances from the two inner nodes */
-            const mpm_real u = t[p] - 1, v = 2 - t[p];
-            s->N[axis][0][p] = v * v * v / 6;
-            s->N[axis][1][p] = MPM_R(2.0) / 3 - u * u * (1 - u / 2);
-            s->N[axis][2][p] = MPM_R(2.0) / 3 - v * v * (1 - v / 2);
-            s->N[axis][3][p] = u * u * u / 6;
-            s->dN[axis][0][p] = -inv * v * v / 2;
-            s->dN[axis][1][p] = -inv * u * (2 - MPM_R(1.5) * u);
-            s->dN[axis][2][p] = inv * v * (2 - MPM_R(1.5) * v);
-            s->dN[axis][3][p] = inv * u * u / 2;
-        } else {
-            for (i = 0; i < 3; i++) {
-                mpm_real e = t[p] - (mpm_real)i, a = e < 0 ? -e : e, sign = e < 0 ? inv : -inv;
-                mpm_real reach = 1 + l - a > 0 ? 1 + l - a : 0;
-                mpm_real outer = reach * reach / (4 * l), inner = 1 - (e * e + l * l) / (2 * l);
-                mpm_real douter = sign * reach / (2 * l), dinner = -e * inv / l;
-                s->N[axis][i][p] = a < l ? inner : (a <= 1 - l ? 1 - a : outer);
-                s->dN[axis][i][p] = a < l ? dinner : (a <= 1 - l ? sign : douter);
-            }
-        }
-    }
+    const int n = (s->n + MPM__WIDE - 1) / MPM__WIDE * MPM__WIDE; /* the last ones stand for no point */
+    if (k == 1) mpm__ones(s, axis, n);
+    else if (k == 2) mpm__hats(s, axis, n, t, inv);
+    else if (k == 3) mpm__averaged_hats(s, axis, n, t, l, inv);
+    else mpm__cubics(s, axis, n, t, inv);
 }
 
 /* Edge of the cube over which a body's functions average the hat [cells]. */
@@ -1110,6 +1146,7 @@ MPM__KERNEL void mpm__weigh(const mpm_world *w, const mpm_run *r, int32_t first,
         const mpm_real *x = w->points.x[d] + first, o = w->desc.origin[d];
         const mpm_real base = (mpm_real)(r->base[d] - w->ghost);
         for (p = 0; p < n; p++) t[p] = (x[p] - o) * inv - base;
+        for (; p % MPM__WIDE; p++) t[p] = 0;
         mpm__weights_axis(s, d, d == 1 ? ky : k, t, l, inv);
     }
 }
@@ -1142,49 +1179,135 @@ MPM__KERNEL void mpm__gradients(const mpm__weights *s, int p, int k, int ky, mpm
         }
 }
 
-/* Sum over the support of V N at point p. Summed direction by direction. */
-MPM__KERNEL mpm_real mpm__value(const mpm__weights *s, int p, int k, int ky, const mpm_real *V)
+/* Nodal values of linear functions turned into the coefficients of their polynomial 1, x, z, xz (in 3D 1, x, y, xy, z,
+   xz, yz, xyz) in the cell: a point then costs half. Others stay as they are. */
+MPM__KERNEL void mpm__as_polynomial(int k, int ky, mpm_real V[3][MPM_SUPPORT])
 {
-    mpm_real sum = 0;
-    int ix, iy, iz;
-    for (iz = 0; iz < k; iz++) {
-        mpm_real plane = 0;
-        for (iy = 0; iy < ky; iy++) {
-            mpm_real line = 0;
-            for (ix = 0; ix < k; ix++) line += s->N[0][ix][p] * V[(iz * ky + iy) * k + ix];
-            plane += s->N[1][iy][p] * line;
-        }
-        sum += s->N[2][iz][p] * plane;
+    int d, a, stride;
+    if (k != 2) return;
+    for (d = 0; d < 3; d++)
+        for (stride = 1; stride < k * ky * k; stride *= 2)
+            for (a = 0; a < k * ky * k; a++)
+                if (a & stride) V[d][a] -= V[d][a - stride];
+}
+
+/* c0 + c1 x + (c2 + c3 x) z of a plane of cells, in 3D with y for z, and that of the upper face times z. */
+MPM__KERNEL mpm_real mpm__polynomial(const mpm__weights *s, int p, int ky, const mpm_real *c)
+{
+    const mpm_real x = s->N[0][1][p], z = s->N[2][1][p], y = ky > 1 ? s->N[1][1][p] : z;
+    const mpm_real low = (c[0] + x * c[1]) + y * (c[2] + x * c[3]);
+    return ky > 1 ? low + z * ((c[4] + x * c[5]) + y * (c[6] + x * c[7])) : low;
+}
+
+/* ... and its gradient. */
+MPM__KERNEL mpm_real mpm__polynomial_gradient(const mpm__weights *s, int p, int ky, const mpm_real *c, mpm_real *g)
+{
+    const mpm_real x = s->N[0][1][p], z = s->N[2][1][p], y = ky > 1 ? s->N[1][1][p] : z, inv = s->dN[0][1][p];
+    const mpm_real c0 = c[0] + x * c[1], c2 = c[2] + x * c[3], c1 = c[1] + y * c[3], low = c0 + y * c2;
+    if (ky > 1) {
+        const mpm_real c6 = c[6] + x * c[7], high = (c[4] + x * c[5]) + y * c6;
+        g[0] = inv * (c1 + z * (c[5] + y * c[7]));
+        g[1] = inv * (c2 + z * c6);
+        g[2] = inv * high;
+        return low + z * high;
     }
-    return sum;
+    g[0] = inv * c1;
+    g[1] = 0;
+    g[2] = inv * c2;
+    return low;
+}
+
+/* Sums over the support of V N at the points of a piece, direction by direction: with k and ky constants no loop is
+   left but that over the points. */
+MPM__KERNEL void mpm__sums(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum)
+{
+    int ix, iy, iz, p;
+    for (p = 0; p < s->n; p++) {
+        mpm_real all = 0;
+        for (iz = 0; iz < k; iz++) {
+            mpm_real plane = 0;
+            for (iy = 0; iy < ky; iy++) {
+                mpm_real line = 0;
+                for (ix = 0; ix < k; ix++) line += s->N[0][ix][p] * V[(iz * ky + iy) * k + ix];
+                plane += s->N[1][iy][p] * line;
+            }
+            all += s->N[2][iz][p] * plane;
+        }
+        sum[p] = all;
+    }
 }
 
 /* ... and the sums of V grad N: g[0], g[1], g[2]. */
-MPM__KERNEL mpm_real mpm__value_gradient(const mpm__weights *s, int p, int k, int ky, const mpm_real *V, mpm_real *g)
+MPM__KERNEL void mpm__gradient_sums(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum,
+                                    mpm_real (*g)[MPM__LANES])
 {
-    mpm_real sum = 0, gx = 0, gy = 0, gz = 0;
-    int ix, iy, iz;
-    for (iz = 0; iz < k; iz++) {
-        mpm_real plane = 0, plane_x = 0, plane_y = 0;
-        for (iy = 0; iy < ky; iy++) {
-            mpm_real line = 0, line_x = 0;
-            for (ix = 0; ix < k; ix++) {
-                line += s->N[0][ix][p] * V[(iz * ky + iy) * k + ix];
-                line_x += s->dN[0][ix][p] * V[(iz * ky + iy) * k + ix];
+    int ix, iy, iz, p;
+    for (p = 0; p < s->n; p++) {
+        mpm_real all = 0, gx = 0, gy = 0, gz = 0;
+        for (iz = 0; iz < k; iz++) {
+            mpm_real plane = 0, plane_x = 0, plane_y = 0;
+            for (iy = 0; iy < ky; iy++) {
+                mpm_real line = 0, line_x = 0;
+                for (ix = 0; ix < k; ix++) {
+                    line += s->N[0][ix][p] * V[(iz * ky + iy) * k + ix];
+                    line_x += s->dN[0][ix][p] * V[(iz * ky + iy) * k + ix];
+                }
+                plane += s->N[1][iy][p] * line;
+                plane_x += s->N[1][iy][p] * line_x;
+                plane_y += s->dN[1][iy][p] * line;
             }
-            plane += s->N[1][iy][p] * line;
-            plane_x += s->N[1][iy][p] * line_x;
-            plane_y += s->dN[1][iy][p] * line;
+            all += s->N[2][iz][p] * plane;
+            gx += s->N[2][iz][p] * plane_x;
+            gy += s->N[2][iz][p] * plane_y;
+            gz += s->dN[2][iz][p] * plane;
         }
-        sum += s->N[2][iz][p] * plane;
-        gx += s->N[2][iz][p] * plane_x;
-        gy += s->N[2][iz][p] * plane_y;
-        gz += s->dN[2][iz][p] * plane;
+        sum[p] = all;
+        g[0][p] = gx;
+        g[1][p] = gy;
+        g[2][p] = gz;
     }
-    g[0] = gx;
-    g[1] = gy;
-    g[2] = gz;
-    return sum;
+}
+
+/* ... for the supports there are beside those of linear functions. */
+static inline void mpm__wide_sums(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum)
+{
+    if (k == 3 && ky == 3) mpm__sums(s, 3, 3, V, sum);
+    else if (k == 3) mpm__sums(s, 3, 1, V, sum);
+    else if (ky == 4) mpm__sums(s, 4, 4, V, sum);
+    else mpm__sums(s, 4, 1, V, sum);
+}
+
+static inline void mpm__wide_gradient_sums(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum,
+                                           mpm_real (*g)[MPM__LANES])
+{
+    if (k == 3 && ky == 3) mpm__gradient_sums(s, 3, 3, V, sum, g);
+    else if (k == 3) mpm__gradient_sums(s, 3, 1, V, sum, g);
+    else if (ky == 4) mpm__gradient_sums(s, 4, 4, V, sum, g);
+    else mpm__gradient_sums(s, 4, 1, V, sum, g);
+}
+
+/* The same of V from mpm__as_polynomial. */
+MPM__KERNEL void mpm__values(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum)
+{
+    int p;
+    if (k != 2) mpm__wide_sums(s, k, ky, V, sum);
+    else
+        for (p = 0; p < s->n; p++) sum[p] = mpm__polynomial(s, p, ky, V);
+}
+
+MPM__KERNEL void mpm__values_gradient(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum,
+                                      mpm_real (*g)[MPM__LANES])
+{
+    int p;
+    if (k != 2) mpm__wide_gradient_sums(s, k, ky, V, sum, g);
+    else
+        for (p = 0; p < s->n; p++) {
+            mpm_real at[3];
+            sum[p] = mpm__polynomial_gradient(s, p, ky, V, at);
+            g[0][p] = at[0];
+            g[1][p] = at[1];
+            g[2][p] = at[2];
+        }
 }
 
 MPM__KERNEL const int32_t *mpm__run_nodes(const mpm_world *w, const mpm_run *r)
@@ -1232,6 +1355,14 @@ MPM__KERNEL mpm_real *mpm__node_vector(mpm_node *n, mpm__vector which)
     }
 }
 
+/* Nothing yet at the nodes of a run. */
+MPM__KERNEL void mpm__clear(int k, int ky, mpm_real V[3][MPM_SUPPORT])
+{
+    int a, d;
+    for (d = 0; d < 3; d++)
+        for (a = 0; a < k * ky * k; a++) V[d][a] = 0;
+}
+
 /* The turning of images in V, node by node. */
 static inline void mpm__turn(const mpm_run *r, int k, int ky, mpm_real V[3][MPM_SUPPORT])
 {
@@ -1260,30 +1391,38 @@ MPM__KERNEL void mpm__gather(const mpm_world *w, const mpm_run *r, int k, int ky
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     const mpm_real cutoff = w->desc.mass_cutoff * w->body[r->body].point_mass;
+    mpm_real mass[MPM_SUPPORT];
     int a, d;
     for (a = 0; a < k * ky * k; a++) {
         mpm_node *n = &w->node[slot[a]];
         const mpm_real *from = mpm__node_vector(n, which);
-        const mpm_real f = n->mass > cutoff ? (per_mass ? 1 / n->mass : 1) : 0;
-        for (d = 0; d < 3; d++) V[d][a] = from[d] * f;
+        mass[a] = n->mass;
+        for (d = 0; d < 3; d++) V[d][a] = from[d];
     }
+    for (a = 0; a < k * ky * k; a++) mass[a] = mass[a] > cutoff ? (per_mass ? 1 / mass[a] : 1) : 0;
+    for (d = 0; d < 3; d++)
+        for (a = 0; a < k * ky * k; a++) V[d][a] *= mass[a];
     if (r->flags & 63) mpm__turn(r, k, ky, V);
 }
 
-/* call(k, ky, hoop) with the support and the geometry of a world as constants; rings: 1 where hoop matters. */
-#define MPM__SPECIALISED(w, rings, call)                                            \
-    do {                                                                            \
-        const int mpm__k = (w)->support[0], mpm__flat_here = mpm__flat(&(w)->desc); \
-        const int mpm__hoop = (rings) && (w)->desc.geometry == MPM_AXISYMMETRIC;    \
-        if (!mpm__flat_here && mpm__k == 2) call(2, 2, 0);                          \
-        else if (!mpm__flat_here && mpm__k == 3) call(3, 3, 0);                     \
-        else if (!mpm__flat_here) call(mpm__k, mpm__k, 0); /* 64 nodes: loops */    \
-        else if (mpm__k == 2 && !mpm__hoop) call(2, 1, 0);                          \
-        else if (mpm__k == 2) call(2, 1, 1);                                        \
-        else if (mpm__k == 3 && !mpm__hoop) call(3, 1, 0);                          \
-        else if (mpm__k == 3) call(3, 1, 1);                                        \
-        else if (!mpm__hoop) call(4, 1, 0);                                         \
-        else call(4, 1, 1);                                                         \
+/* ... as mpm__value wants it. */
+MPM__KERNEL void mpm__gather_polynomial(const mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which,
+                                        int per_mass, mpm_real V[3][MPM_SUPPORT])
+{
+    mpm__gather(w, r, k, ky, which, per_mass, V);
+    mpm__as_polynomial(k, ky, V);
+}
+
+/* call(k, ky, hoop) with the support and the geometry of a world: as constants for linear functions, whose few nodes
+   are then no loops. rings: 1 where hoop matters. */
+#define MPM__SPECIALISED(w, rings, call)                                                       \
+    do {                                                                                       \
+        const int mpm__k = (w)->support[0], mpm__ky = (w)->support[1];                         \
+        const int mpm__hoop = (rings) && (w)->desc.geometry == MPM_AXISYMMETRIC;               \
+        if (mpm__k != 2) call(mpm__k, mpm__ky, mpm__hoop);                                     \
+        else if (mpm__ky == 2) call(2, 2, 0);                                                  \
+        else if (!mpm__hoop) call(2, 1, 0);                                                    \
+        else call(2, 1, 1);                                                                    \
     } while (0)
 
 /* call(k, ky, hoop) for every run of w, which is `run` there. */
@@ -1587,74 +1726,95 @@ MPM_API void mpm_node_position(const mpm_world *w, const mpm_node *n, mpm_real x
 
 /* ---- to the nodes ------------------------------------------------------------------------- */
 
-/* m_I += m_p N_I and P_I += m_p v_p N_I of one run (A 3.23, 3.24); with musl v_I += m_p v_p N_I, mass left (A 3.33). */
-MPM__KERNEL void mpm__p2g_run(mpm_world *w, const mpm_run *r, int k, int ky, int musl)
+/* What a sweep over the points does; two that follow each other share one sweep and its weights. */
+enum { MPM__P2G = 1, MPM__FORCES = 2, MPM__G2P = 4, MPM__MUSL = 8, MPM__STRESS = 16, MPM__MOVE = 32 };
+
+/* P_I += m_p v_p N_I of a piece of a run (A 3.24), and with mass m_I += m_p N_I (A 3.23). */
+MPM__KERNEL void mpm__momentum_piece(const mpm_points *q, const mpm__weights *s, int32_t at, int k, int ky, int nodes, int mass,
+                                     mpm_real *M, mpm_real P[3][MPM_SUPPORT])
 {
-    const mpm_points *q = &w->points;
-    const int32_t *slot = mpm__run_nodes(w, r);
-    mpm_real M[MPM_SUPPORT] = {0}, P[3][MPM_SUPPORT] = {{0}}, N[MPM_SUPPORT];
-    mpm__weights s;
-    int32_t at;
-    int n, p, a;
-    MPM__EACH_PIECE(r, at, n) {
-        mpm__weigh(w, r, at, n, k, ky, &s);
-        for (p = 0; p < n; p++) {
-            const mpm_real m = q->mass[at + p];
-            const mpm_real px = m * q->v[0][at + p], py = m * q->v[1][at + p], pz = m * q->v[2][at + p];
-            mpm__products(&s, p, k, ky, N);
-            for (a = 0; a < k * ky * k; a++) {
-                if (!musl) M[a] += m * N[a];
-                P[0][a] += px * N[a];
-                P[1][a] += py * N[a];
-                P[2][a] += pz * N[a];
-            }
+    mpm_real N[MPM_SUPPORT];
+    int p, a;
+    for (p = 0; p < s->n; p++) {
+        const mpm_real m = q->mass[at + p];
+        const mpm_real px = m * q->v[0][at + p], py = m * q->v[1][at + p], pz = m * q->v[2][at + p];
+        mpm__products(s, p, k, ky, N);
+        for (a = 0; a < nodes; a++) {
+            if (mass) M[a] += m * N[a];
+            P[0][a] += px * N[a];
+            P[1][a] += py * N[a];
+            P[2][a] += pz * N[a];
         }
     }
-    if (!musl)
-        for (a = 0; a < k * ky * k; a++) w->node[slot[a]].mass += M[a];
-    mpm__scatter(w, r, k, ky, musl ? MPM__VELOCITY : MPM__MOMENTUM, P);
 }
 
-MPM_API void mpm_p2g(mpm_world *w)
+/* f_I -= (m_p / rho_p) sigma_p . grad N_I (A 3.25); in rings f_Ir -= (m_p / rho_p) sigma_hoop N_I / r_p too. */
+MPM__KERNEL void mpm__forces_piece(const mpm_points *q, const mpm__weights *s, int32_t at, int k, int ky, int nodes, int hoop,
+                                   mpm_real F[3][MPM_SUPPORT])
+{
+    mpm_real G[3][MPM_SUPPORT], N[MPM_SUPPORT];
+    int p, a;
+    for (p = 0; p < s->n; p++) {
+        const int32_t i = at + p;
+        const mpm_real V = -q->mass[i] / q->density[i];
+        const mpm_real xx = V * q->stress[0][i], yy = V * q->stress[1][i], zz = V * q->stress[2][i];
+        const mpm_real yz = V * q->stress[3][i], xz = V * q->stress[4][i], xy = V * q->stress[5][i];
+        mpm__gradients(s, p, k, ky, G);
+        for (a = 0; a < nodes; a++) {
+            F[0][a] += xx * G[0][a] + xy * G[1][a] + xz * G[2][a];
+            F[1][a] += xy * G[0][a] + yy * G[1][a] + yz * G[2][a];
+            F[2][a] += xz * G[0][a] + yz * G[1][a] + zz * G[2][a];
+        }
+        if (hoop) { /* the hoop stress pulls the ring inwards */
+            const mpm_real pull = yy / q->x[0][i];
+            mpm__products(s, p, k, ky, N);
+            for (a = 0; a < nodes; a++) F[0][a] += pull * N[a];
+        }
+    }
+}
+
+/* The sums of one run to its nodes: mass and momentum, forces, or both. */
+MPM__KERNEL void mpm__to_nodes_run(mpm_world *w, const mpm_run *r, int k, int ky, int hoop, int what)
+{
+    mpm_real M[MPM_SUPPORT], P[3][MPM_SUPPORT], F[3][MPM_SUPPORT];
+    const int32_t *slot = mpm__run_nodes(w, r);
+    mpm__weights s;
+    int32_t at;
+    int n, a;
+    for (a = 0; a < k * ky * k; a++) M[a] = 0;
+    mpm__clear(k, ky, P);
+    mpm__clear(k, ky, F);
+    MPM__EACH_PIECE(r, at, n) {
+        mpm__weigh(w, r, at, n, k, ky, &s);
+        if (what & MPM__P2G) mpm__momentum_piece(&w->points, &s, at, k, ky, w->support[0] * w->support[1] * w->support[2], 1, M, P);
+        if (what & MPM__FORCES) mpm__forces_piece(&w->points, &s, at, k, ky, w->support[0] * w->support[1] * w->support[2], hoop, F);
+    }
+    if (what & MPM__P2G) {
+        for (a = 0; a < k * ky * k; a++) w->node[slot[a]].mass += M[a];
+        mpm__scatter(w, r, k, ky, MPM__MOMENTUM, P);
+    }
+    if (what & MPM__FORCES) mpm__scatter(w, r, k, ky, MPM__FORCE, F);
+}
+
+static inline void mpm__sweep_to_nodes(mpm_world *w, int what)
+{
+#define MPM__CALL(k, ky, hoop) mpm__to_nodes_run(w, run, k, ky, hoop, what)
+    MPM__EACH_RUN(w, 1, MPM__CALL);
+#undef MPM__CALL
+}
+
+/* Essential boundary conditions on the momentum of level k. */
+static inline void mpm__constrain_momentum(mpm_world *w)
 {
     int32_t i;
-#define MPM__CALL(k, ky, hoop) mpm__p2g_run(w, run, k, ky, 0)
-    MPM__EACH_RUN(w, 0, MPM__CALL);
-#undef MPM__CALL
     for (i = 0; i < w->nodes; i++)
         if (w->node[i].flags) mpm__constrain(w, &w->node[i], w->node[i].momentum, NULL);
 }
 
-/* f_I -= (m_p / rho_p) sigma_p . grad N_I of one run (A 3.25); in rings f_Ir -= (m_p / rho_p) sigma_hoop N_I / r_p
-   too. */
-MPM__KERNEL void mpm__forces_run(mpm_world *w, const mpm_run *r, int k, int ky, int hoop)
+MPM_API void mpm_p2g(mpm_world *w)
 {
-    const mpm_points *q = &w->points;
-    mpm_real F[3][MPM_SUPPORT] = {{0}}, G[3][MPM_SUPPORT], N[MPM_SUPPORT];
-    mpm__weights s;
-    int32_t at;
-    int n, p, a;
-    MPM__EACH_PIECE(r, at, n) {
-        mpm__weigh(w, r, at, n, k, ky, &s);
-        for (p = 0; p < n; p++) {
-            const int32_t i = at + p;
-            const mpm_real V = -q->mass[i] / q->density[i];
-            const mpm_real xx = V * q->stress[0][i], yy = V * q->stress[1][i], zz = V * q->stress[2][i];
-            const mpm_real yz = V * q->stress[3][i], xz = V * q->stress[4][i], xy = V * q->stress[5][i];
-            mpm__gradients(&s, p, k, ky, G);
-            for (a = 0; a < k * ky * k; a++) {
-                F[0][a] += xx * G[0][a] + xy * G[1][a] + xz * G[2][a];
-                F[1][a] += xy * G[0][a] + yy * G[1][a] + yz * G[2][a];
-                F[2][a] += xz * G[0][a] + yz * G[1][a] + zz * G[2][a];
-            }
-            if (hoop) { /* the hoop stress pulls the ring inwards */
-                const mpm_real pull = yy / q->x[0][i];
-                mpm__products(&s, p, k, ky, N);
-                for (a = 0; a < k * ky * k; a++) F[0][a] += pull * N[a];
-            }
-        }
-    }
-    mpm__scatter(w, r, k, ky, MPM__FORCE, F);
+    mpm__sweep_to_nodes(w, MPM__P2G);
+    mpm__constrain_momentum(w);
 }
 
 /* Stiffness of the springs beside the dampers at point i, times its area: 2.5 G/r along the face's normal and 0.4 of
@@ -1697,15 +1857,16 @@ static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r)
     const mpm_points *q = &w->points;
     const mpm_body *b = &w->body[r->body];
     const mpm_body_desc *d = &b->desc;
-    mpm_real F[3][MPM_SUPPORT] = {{0}}, V[3][MPM_SUPPORT], N[MPM_SUPPORT];
+    mpm_real F[3][MPM_SUPPORT] = {{0}}, V[3][MPM_SUPPORT], N[MPM_SUPPORT], moves[3][MPM__LANES];
     mpm__weights s;
     int32_t at;
     int n, p, a, c, face, any = 0;
     for (at = r->first; at < r->first + r->count; at++) any |= q->flags[at];
     if (!(any & d->absorb)) return;
-    mpm__gather(w, r, k, ky, MPM__MOMENTUM, 1, V);
+    mpm__gather_polynomial(w, r, k, ky, MPM__MOMENTUM, 1, V);
     MPM__EACH_PIECE(r, at, n) {
         mpm__weigh(w, r, at, n, k, ky, &s);
+        for (c = 0; c < 3; c++) mpm__values(&s, k, ky, V[c], moves[c]);
         for (p = 0; p < n; p++)
             for (face = 0; face < 2; face++) {
                 const int32_t i = at + p;
@@ -1720,7 +1881,7 @@ static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r)
                 }
                 cn = d->absorb_normal * d->density * d->wave_p * b->area[face] * q->mass[i] / b->mass[face];
                 ct = d->absorb_shear * d->density * d->wave_s * b->area[face] * q->mass[i] / b->mass[face];
-                for (c = 0; c < 3; c++) v[c] = mpm__value(&s, p, k, ky, V[c]);
+                for (c = 0; c < 3; c++) v[c] = moves[c][p];
                 for (c = 0; c < 3; c++) vn += v[c] * normal[c];
                 mpm__products(&s, p, k, ky, N);
                 for (c = 0; c < 3; c++) t[c] = -(cn - ct) * vn * normal[c] - ct * v[c];
@@ -1799,16 +1960,27 @@ static inline void mpm__gravity(mpm_world *w, int work)
         if (w->run[i].flags & 63) mpm__weigh_images(w, &w->run[i], work);
 }
 
-MPM_API void mpm_forces(mpm_world *w)
+/* What acts beside the internal forces, and the ledger of images. */
+static inline void mpm__other_forces(mpm_world *w)
 {
     int32_t i;
-#define MPM__CALL(k, ky, hoop) mpm__forces_run(w, run, k, ky, hoop)
-    MPM__EACH_RUN(w, 1, MPM__CALL);
-#undef MPM__CALL
     mpm__mirror_force(w);
     for (i = 0; i < w->runs; i++)
         if (w->body[w->run[i].body].desc.absorb) mpm__absorb_run(w, &w->run[i]);
     if (mpm__has_gravity(w)) mpm__gravity(w, 0);
+}
+
+MPM_API void mpm_forces(mpm_world *w)
+{
+    mpm__sweep_to_nodes(w, MPM__FORCES);
+    mpm__other_forces(w);
+}
+
+MPM_API void mpm_to_nodes(mpm_world *w)
+{
+    mpm__sweep_to_nodes(w, MPM__P2G | MPM__FORCES);
+    mpm__constrain_momentum(w);
+    mpm__other_forces(w);
 }
 
 MPM_API void mpm_grid_update(mpm_world *w)
@@ -2461,22 +2633,42 @@ MPM_API void mpm_contact_apply(mpm_world *w)
 
 /* ---- back to the points ---------------------------------------------------------------------- */
 
-/* v_p += dt sum N_I f_I / m_I of one run (A 3.32). */
-MPM__KERNEL void mpm__g2p_run(mpm_world *w, const mpm_run *r, int k, int ky)
+/* x_p += f sum N_I V_I of a piece of a run, for a vector x of the points. */
+MPM__KERNEL void mpm__add_values(const mpm__weights *s, int k, int ky, mpm_real V[3][MPM_SUPPORT], mpm_real f,
+                                 mpm_real *const x[3], int32_t at)
+{
+    mpm_real sum[MPM__LANES];
+    int p, d;
+    for (d = 0; d < 3; d++) {
+        mpm_real *to = x[d] + at;
+        mpm__values(s, k, ky, V[d], sum);
+        for (p = 0; p < s->n; p++) to[p] += f * sum[p];
+    }
+}
+
+/* v_p += dt sum N_I f_I / m_I of one run (A 3.32), v_I += m_p v_p N_I (A 3.33), or both. */
+MPM__KERNEL void mpm__velocities_run(mpm_world *w, const mpm_run *r, int k, int ky, int what)
 {
     const mpm_real dt = w->dt;
-    mpm_real A[3][MPM_SUPPORT];
+    mpm_real A[3][MPM_SUPPORT], P[3][MPM_SUPPORT];
     mpm__weights s;
     int32_t at;
-    int n, p, d;
-    mpm__gather(w, r, k, ky, MPM__FORCE, 1, A);
+    int n;
+    mpm__clear(k, ky, P);
+    if (what & MPM__G2P) mpm__gather_polynomial(w, r, k, ky, MPM__FORCE, 1, A);
     MPM__EACH_PIECE(r, at, n) {
         mpm__weigh(w, r, at, n, k, ky, &s);
-        for (d = 0; d < 3; d++) {
-            mpm_real *v = w->points.v[d] + at;
-            for (p = 0; p < n; p++) v[p] += dt * mpm__value(&s, p, k, ky, A[d]);
-        }
+        if (what & MPM__G2P) mpm__add_values(&s, k, ky, A, dt, w->points.v, at);
+        if (what & MPM__MUSL) mpm__momentum_piece(&w->points, &s, at, k, ky, w->support[0] * w->support[1] * w->support[2], 0, NULL, P);
     }
+    if (what & MPM__MUSL) mpm__scatter(w, r, k, ky, MPM__VELOCITY, P);
+}
+
+static inline void mpm__sweep_velocities(mpm_world *w, int what)
+{
+#define MPM__CALL(k, ky, hoop) mpm__velocities_run(w, run, k, ky, what)
+    MPM__EACH_RUN(w, 0, MPM__CALL);
+#undef MPM__CALL
 }
 
 /* Points that reach through a symmetry plane take a ghost's acceleration with its sign turned: twice
@@ -2501,14 +2693,18 @@ static inline void mpm__mirror_run(mpm_world *w, const mpm_run *r)
     }
 }
 
-MPM_API void mpm_g2p(mpm_world *w)
+/* What points that reach through a side get from images, to the ledger. */
+static inline void mpm__account_images(mpm_world *w)
 {
     int32_t i;
-#define MPM__CALL(k, ky, hoop) mpm__g2p_run(w, run, k, ky)
-    MPM__EACH_RUN(w, 0, MPM__CALL);
-#undef MPM__CALL
     for (i = 0; i < w->runs; i++)
         if (w->run[i].flags & 63) mpm__mirror_run(w, &w->run[i]);
+}
+
+MPM_API void mpm_g2p(mpm_world *w)
+{
+    mpm__sweep_velocities(w, MPM__G2P);
+    mpm__account_images(w);
 }
 
 /* Energy lost in contact, in bonds and at walls. */
@@ -2533,13 +2729,11 @@ static inline void mpm__account(mpm_world *w)
     }
 }
 
-MPM_API void mpm_musl(mpm_world *w)
+/* Once the momenta of the new velocities are at the nodes: velocities, boundary conditions, contact, the ledger. */
+static inline void mpm__close_musl(mpm_world *w)
 {
     int32_t i;
     int d;
-#define MPM__CALL(k, ky, hoop) mpm__p2g_run(w, run, k, ky, 1)
-    MPM__EACH_RUN(w, 0, MPM__CALL);
-#undef MPM__CALL
     for (i = 0; i < w->nodes; i++) {
         mpm_node *n = &w->node[i];
         for (d = 0; d < 3; d++) n->velocity[d] = n->mass > 0 ? n->velocity[d] / n->mass : 0;
@@ -2555,30 +2749,39 @@ MPM_API void mpm_musl(mpm_world *w)
     }
 }
 
+MPM_API void mpm_musl(mpm_world *w)
+{
+    mpm__sweep_velocities(w, MPM__MUSL);
+    mpm__close_musl(w);
+}
+
+MPM_API void mpm_to_points(mpm_world *w)
+{
+    mpm__sweep_velocities(w, MPM__G2P | MPM__MUSL);
+    mpm__account_images(w);
+    mpm__close_musl(w);
+}
+
 /* Strain and rotation increments of a piece of a run, d eps_ij = dt (dv_i/dx_j + dv_j/dx_i) / 2 with dv_i/dx_j =
    sum v_Ii dN_I/dx_j, and half the curl of v times dt (A 3.35); in rings d eps_hoop = dt v_r / r. */
-MPM__KERNEL void mpm__strain_piece(const mpm_world *w, const mpm_run *r, int32_t at, int n, int k, int ky, int hoop,
+MPM__KERNEL void mpm__strain_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int hoop,
                                    mpm_real V[3][MPM_SUPPORT], mpm_real (*e)[MPM_BLOCK],
                                    mpm_real (*spin)[MPM_BLOCK], int to)
 {
-    const mpm_real *radius = w->points.x[0] + at, dt = w->dt;
-    mpm__weights s;
-    int p;
-    mpm__weigh(w, r, at, n, k, ky, &s);
-    for (p = 0; p < n; p++) {
-        mpm_real gx[3], gy[3], gz[3], vr;
-        vr = mpm__value_gradient(&s, p, k, ky, V[0], gx);
-        mpm__value_gradient(&s, p, k, ky, V[1], gy);
-        mpm__value_gradient(&s, p, k, ky, V[2], gz);
-        e[0][to + p] = dt * gx[0];
-        e[1][to + p] = dt * (hoop ? vr / radius[p] : gy[1]);
-        e[2][to + p] = dt * gz[2];
-        e[3][to + p] = MPM_R(0.5) * dt * (gy[2] + gz[1]);
-        e[4][to + p] = MPM_R(0.5) * dt * (gx[2] + gz[0]);
-        e[5][to + p] = MPM_R(0.5) * dt * (gx[1] + gy[0]);
-        spin[0][to + p] = MPM_R(0.5) * dt * (gz[1] - gy[2]);
-        spin[1][to + p] = MPM_R(0.5) * dt * (gx[2] - gz[0]);
-        spin[2][to + p] = MPM_R(0.5) * dt * (gy[0] - gx[1]);
+    const mpm_real *radius = w->points.x[0] + at, dt = w->dt, half = MPM_R(0.5) * w->dt;
+    mpm_real v[3][MPM__LANES], g[3][3][MPM__LANES];
+    int p, d;
+    for (d = 0; d < 3; d++) mpm__values_gradient(s, k, ky, V[d], v[d], g[d]);
+    for (p = 0; p < s->n; p++) {
+        e[0][to + p] = dt * g[0][0][p];
+        e[1][to + p] = dt * (hoop ? v[0][p] / radius[p] : g[1][1][p]);
+        e[2][to + p] = dt * g[2][2][p];
+        e[3][to + p] = half * (g[1][2][p] + g[2][1][p]);
+        e[4][to + p] = half * (g[0][2][p] + g[2][0][p]);
+        e[5][to + p] = half * (g[0][1][p] + g[1][0][p]);
+        spin[0][to + p] = half * (g[2][1][p] - g[1][2][p]);
+        spin[1][to + p] = half * (g[0][2][p] - g[2][0][p]);
+        spin[2][to + p] = half * (g[1][0][p] - g[0][1][p]);
     }
 }
 
@@ -2629,22 +2832,39 @@ static inline mpm_status mpm__constitute(mpm_world *w, const mpm_body *body, int
     return s;
 }
 
-/* Strain increments of all points of one body, a block at a time. */
-MPM__KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, int32_t run, int32_t runs, int k, int ky, int hoop)
+/* 1 if a node of the run has a record: of a contact or a wall. */
+static inline int mpm__run_touches(const mpm_world *w, const mpm_run *r)
 {
-    mpm_real e[6][MPM_BLOCK], spin[3][MPM_BLOCK], V[3][MPM_SUPPORT];
+    const int32_t *slot = mpm__run_nodes(w, r);
+    int a;
+    for (a = 0; a < w->support[0] * w->support[1] * w->support[2]; a++)
+        if (w->node[slot[a]].touch >= 0) return 1;
+    return 0;
+}
+
+/* Strain increments of all points of one body, a block at a time. With MOVE in what, points are moved too, but not
+   those of runs that touch: the ledger of their cut velocities asks for level k. */
+MPM__KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, int32_t run, int32_t runs, int k, int ky, int hoop,
+                                        int what)
+{
+    mpm_real e[6][MPM_BLOCK], spin[3][MPM_BLOCK], V[3][MPM_SUPPORT], U[3][MPM_SUPPORT];
     int32_t first = w->body[body].first;
     int filled = 0;
+    mpm__weights weights;
     mpm_status s;
     for (; run < runs; run++) {
         const mpm_run *r = &w->run[run];
+        const int moves = what & MPM__MOVE && !mpm__run_touches(w, r);
         int32_t at = r->first;
-        mpm__gather(w, r, k, ky, MPM__VELOCITY, 0, V);
+        mpm__gather_polynomial(w, r, k, ky, MPM__VELOCITY, 0, V);
+        if (moves) mpm__gather_polynomial(w, r, k, ky, MPM__MOMENTUM, 1, U);
         while (at < r->first + r->count) {
             int n = (int)(r->first + r->count - at);
             if (n > MPM_BLOCK - filled) n = MPM_BLOCK - filled;
             if (n > MPM__LANES) n = MPM__LANES;
-            mpm__strain_piece(w, r, at, n, k, ky, hoop, V, e, spin, filled);
+            mpm__weigh(w, r, at, n, k, ky, &weights);
+            mpm__strain_piece(w, &weights, at, k, ky, hoop, V, e, spin, filled);
+            if (moves) mpm__add_values(&weights, k, ky, U, w->dt, w->points.x, at);
             at += n;
             filled += n;
             if (filled < MPM_BLOCK && !(run + 1 == runs && at == r->first + r->count)) continue;
@@ -2715,13 +2935,13 @@ static inline void mpm__account_cuts(mpm_world *w)
     }
 }
 
-MPM_API mpm_status mpm_stress(mpm_world *w)
+static inline mpm_status mpm__sweep_stress(mpm_world *w, int what)
 {
     int32_t b, from = 0, to = 0;
     mpm_status s;
     for (b = 0; b < w->bodies; b++, from = to) {
         while (to < w->runs && w->run[to].body == b) to++;
-#define MPM__CALL(k, ky, hoop) s = mpm__stress_body(w, b, from, to, k, ky, hoop)
+#define MPM__CALL(k, ky, hoop) s = mpm__stress_body(w, b, from, to, k, ky, hoop, what)
         MPM__SPECIALISED(w, 1, MPM__CALL);
 #undef MPM__CALL
         if (s < 0) return s;
@@ -2733,29 +2953,44 @@ MPM_API mpm_status mpm_stress(mpm_world *w)
 /* x_p += dt sum N_I P_I / m_I of one run (A 3.32). */
 MPM__KERNEL void mpm__move_run(mpm_world *w, const mpm_run *r, int k, int ky)
 {
-    const mpm_real dt = w->dt;
-    mpm_real V[3][MPM_SUPPORT];
+    mpm_real U[3][MPM_SUPPORT];
     mpm__weights s;
     int32_t at;
-    int n, p, d;
-    mpm__gather(w, r, k, ky, MPM__MOMENTUM, 1, V);
+    int n;
+    mpm__gather_polynomial(w, r, k, ky, MPM__MOMENTUM, 1, U);
     MPM__EACH_PIECE(r, at, n) {
         mpm__weigh(w, r, at, n, k, ky, &s);
-        for (d = 0; d < 3; d++) {
-            mpm_real *x = w->points.x[d] + at;
-            for (p = 0; p < n; p++) x[p] += dt * mpm__value(&s, p, k, ky, V[d]);
-        }
+        mpm__add_values(&s, k, ky, U, w->dt, w->points.x, at);
     }
 }
 
-MPM_API void mpm_move(mpm_world *w)
+/* Moves the points of all runs, or of those that touch, and the time. */
+static inline void mpm__sweep_move(mpm_world *w, int all)
 {
+    const int k = w->support[0], ky = w->support[1];
+    int32_t i;
+    if (all) {
 #define MPM__CALL(k, ky, hoop) mpm__move_run(w, run, k, ky)
-    MPM__EACH_RUN(w, 0, MPM__CALL);
+        MPM__EACH_RUN(w, 0, MPM__CALL);
 #undef MPM__CALL
+    } else {
+        for (i = 0; i < w->runs && w->touches > 0; i++)
+            if (mpm__run_touches(w, &w->run[i])) mpm__move_run(w, &w->run[i], k, ky);
+    }
     w->time += w->dt;
     w->dt_last = w->dt;
     w->steps++;
+}
+
+MPM_API mpm_status mpm_stress(mpm_world *w) { return mpm__sweep_stress(w, MPM__STRESS); }
+
+MPM_API void mpm_move(mpm_world *w) { mpm__sweep_move(w, 1); }
+
+MPM_API mpm_status mpm_stress_and_move(mpm_world *w)
+{
+    const mpm_status s = mpm__sweep_stress(w, MPM__STRESS | MPM__MOVE);
+    if (s >= 0) mpm__sweep_move(w, 0);
+    return s;
 }
 
 /* ---- locate: points in cell order, runs, slots ---------------------------------------------- */

@@ -412,19 +412,15 @@ MPM_API mpm_status mpm_bond_step(const mpm_bond *b, mpm_world *w, mpm_real dt)
 {
     mpm_status s = mpm_locate(w, dt), stressed;
     if (s < 0) return s;
-    mpm_p2g(w);
-    mpm_forces(w);
+    mpm_to_nodes(w);
     mpm_grid_update(w);
     mpm_contact_find(w);
     mpm_bond_grow(b, w);
     mpm_bond_nodes(b, w);
     mpm_contact_apply(w);
-    mpm_g2p(w);
-    mpm_musl(w);
-    stressed = mpm_stress(w);
-    if (stressed < 0) return stressed;
-    mpm_move(w);
-    return s;
+    mpm_to_points(w);
+    stressed = mpm_stress_and_move(w);
+    return stressed < 0 ? stressed : s;
 }
 
 /* ---- measures ------------------------------------------------------------------------------- */

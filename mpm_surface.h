@@ -1875,15 +1875,13 @@ MPM_API mpm_status mpm_surface_step(mpm_surfaces *s, mpm_world *w, mpm_real dt)
 {
     mpm_status st = mpm_locate(w, dt), later;
     if (st < 0) return st;
-    mpm_p2g(w);
-    mpm_forces(w);
+    mpm_to_nodes(w);
     if ((later = mpm_surface_contact(s, w)) < 0) {
         w->fault = s->fault;
         return later;
     }
     mpm_grid_update(w);
-    mpm_g2p(w);
-    mpm_musl(w);
+    mpm_to_points(w);
     if ((later = mpm_stress(w)) < 0) return later;
     if ((later = mpm_surface_move(s, w)) < 0) {
         w->fault = s->fault;

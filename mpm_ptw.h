@@ -54,6 +54,8 @@
 
 #include "mpm.h"
 
+#include <string.h>
+
 #if MPM_VERSION_NUMBER != 200
 #error "mpm_ptw.h 0.2.0 needs mpm.h 0.2.0"
 #endif
@@ -129,6 +131,133 @@ typedef enum mpm_melt { MPM_MELT_LIST(MPM_LIST_ENUM) MPM_MELTS } mpm_melt;
 typedef enum mpm_eos { MPM_EOS_LIST(MPM_LIST_ENUM) MPM_EOSES } mpm_eos;
 typedef enum mpm_return_mapping { MPM_RETURN_LIST(MPM_LIST_ENUM) MPM_RETURNS } mpm_return_mapping;
 typedef enum mpm_rotation { MPM_ROTATION_LIST(MPM_LIST_ENUM) MPM_ROTATIONS } mpm_rotation;
+
+/* ---- functions in lanes -------------------------------------------------------------------- */
+
+/* exp, expm1, log, power and erf without calls or branches: a loop over arrays of them is done several at a time by a
+   compiler that may (-O3 -fno-trapping-math), and gives the same bits with any libm. For laws of your own over the
+   points of a block. eps is MPM_EPSILON. Test: 13_lanes. */
+
+#ifdef MPM_FLOAT
+typedef uint32_t mpm__bits;
+enum { MPM__MANTISSA = 23, MPM__BIAS = 127 };
+#define MPM__ROUNDER 12582912.0f              /* 3/2 2^23: added, it leaves a whole number in the low bits */
+#define MPM__LN2_HIGH 0.693359375f            /* ln 2 in two parts; few bits, so that n times the high one is exact */
+#define MPM__LN2_LOW -2.12194440054690583e-4f
+#define MPM__EXP_MOST 88.0f                   /* exp is infinite beyond it and 0 below EXP_LEAST */
+#define MPM__EXP_LEAST -87.0f
+#define MPM__LEAST_NORMAL FLT_MIN
+#define MPM__ROOT_HALF 0x3f3504f3u            /* the bits of sqrt(1/2) */
+#else
+typedef uint64_t mpm__bits;
+enum { MPM__MANTISSA = 52, MPM__BIAS = 1023 };
+#define MPM__ROUNDER 6755399441055744.0
+#define MPM__LN2_HIGH 6.93147180369123816490e-1
+#define MPM__LN2_LOW 1.90821492927058770002e-10
+#define MPM__EXP_MOST 709.0
+#define MPM__EXP_LEAST -708.0
+#define MPM__LEAST_NORMAL DBL_MIN
+#define MPM__ROOT_HALF ((mpm__bits)0x3fe6a09eu << 32 | 0x667f3bcdu)
+#endif
+
+MPM__KERNEL mpm__bits mpm__bits_of(mpm_real x)
+{
+    mpm__bits b;
+    memcpy(&b, &x, sizeof b);
+    return b;
+}
+
+MPM__KERNEL mpm_real mpm__real_of(mpm__bits b)
+{
+    mpm_real x;
+    memcpy(&x, &b, sizeof x);
+    return x;
+}
+
+/* exp x = p + *scale: x = n ln 2 + r, *scale = 2^n, p = 2^n (exp r - 1) by Taylor's series, even and odd terms apart.
+   x between EXP_LEAST and EXP_MOST. */
+MPM__KERNEL mpm_real mpm__exp_parts(mpm_real x, mpm_real *scale)
+{
+    const mpm__bits turned = mpm__bits_of(x * MPM_R(1.44269504088896340736) + MPM__ROUNDER);
+    const mpm_real n = mpm__real_of(turned) - MPM__ROUNDER;
+    const mpm_real r = (x - n * MPM__LN2_HIGH) - n * MPM__LN2_LOW, q = r * r;
+#ifdef MPM_FLOAT
+    const mpm_real even = q * (MPM_R(1.) / 2 + q * (MPM_R(1.) / 24 + q / 720));
+    const mpm_real odd = 1 + q * (MPM_R(1.) / 6 + q * (MPM_R(1.) / 120 + q / 5040));
+#else
+    const mpm_real even = q * (1. / 2 + q * (1. / 24 + q * (1. / 720 + q * (1. / 40320 + q * (1. / 3628800 +
+                          q / 479001600)))));
+    const mpm_real odd = 1 + q * (1. / 6 + q * (1. / 120 + q * (1. / 5040 + q * (1. / 362880 + q * (1. / 39916800 +
+                         q / 6227020800.)))));
+#endif
+    *scale = mpm__real_of((turned + MPM__BIAS) << MPM__MANTISSA);
+    return *scale * (even + r * odd);
+}
+
+MPM__KERNEL mpm_real mpm__exp_range(mpm_real x)
+{
+    const mpm_real y = x > MPM__EXP_MOST ? MPM__EXP_MOST : x;
+    return y < MPM__EXP_LEAST ? MPM__EXP_LEAST : y;
+}
+
+/* exp x within 2 eps. Infinite above 709 (float: 88), 0 below -708 (-87). */
+MPM__KERNEL mpm_real mpm_lane_exp(mpm_real x)
+{
+    mpm_real scale;
+    const mpm_real p = mpm__exp_parts(mpm__exp_range(x), &scale);
+    return (p + scale) * (x > MPM__EXP_MOST ? (mpm_real)HUGE_VAL : x < MPM__EXP_LEAST ? MPM_R(0.0) : MPM_R(1.0));
+}
+
+/* exp x - 1 within 3 eps of itself. Infinite above 709 (88). */
+MPM__KERNEL mpm_real mpm_lane_expm1(mpm_real x)
+{
+    mpm_real scale;
+    const mpm_real p = mpm__exp_parts(mpm__exp_range(x), &scale);
+    return (p + (scale - 1)) * (x > MPM__EXP_MOST ? (mpm_real)HUGE_VAL : MPM_R(1.0));
+}
+
+/* ln x within 2 eps. What is less than the smallest normal number counts as that; no number for infinity. x = 2^n m,
+   sqrt(1/2) <= m < sqrt 2; f = m - 1, s = f/(2 + f): ln m = 2 (s + s^3/3 + s^5/5 ...), written as f less what it is too
+   much. */
+MPM__KERNEL mpm_real mpm_lane_log(mpm_real x)
+{
+    const mpm__bits one = (mpm__bits)MPM__BIAS << MPM__MANTISSA;
+    const mpm__bits b = mpm__bits_of(x < MPM__LEAST_NORMAL ? MPM__LEAST_NORMAL : x);
+    const mpm__bits biased = (b - MPM__ROOT_HALF + one) >> MPM__MANTISSA; /* n + BIAS */
+    const mpm_real ones = mpm__real_of((mpm__bits)(MPM__MANTISSA + MPM__BIAS) << MPM__MANTISSA); /* 2^MANTISSA */
+    const mpm_real n = mpm__real_of(mpm__bits_of(ones) | biased) - ones - MPM__BIAS;
+    const mpm_real f = mpm__real_of(b - (biased << MPM__MANTISSA) + one) - 1;
+    const mpm_real s = f / (2 + f), q = s * s, t = q * q, half = f * f / 2;
+#ifdef MPM_FLOAT
+    const mpm_real even = t * (MPM_R(2.) / 5 + t * (MPM_R(2.) / 9)), odd = q * (MPM_R(2.) / 3 + t * (MPM_R(2.) / 7));
+#else
+    const mpm_real even = t * (2. / 5 + t * (2. / 9 + t * (2. / 13 + t * (2. / 17 + t * (2. / 21)))));
+    const mpm_real odd = q * (2. / 3 + t * (2. / 7 + t * (2. / 11 + t * (2. / 15 + t * (2. / 19)))));
+#endif
+    return n * MPM__LN2_HIGH - ((half - (s * (half + (even + odd)) + n * MPM__LN2_LOW)) - f) + (x - x);
+}
+
+/* x^y, x >= 0, within 2 (1 + |y ln x|) eps; x as in mpm_lane_log. */
+MPM__KERNEL mpm_real mpm_lane_pow(mpm_real x, mpm_real y) { return mpm_lane_exp(y * mpm_lane_log(x)); }
+
+/* erf x and, in *bell, exp(-x^2), both within 2 eps of 1. With t = (x - 3)/(x + 3), exp(x^2) erfc(x) (1 + 2 x) is a
+   polynomial in t, fitted here in 50 digits at the zeros of a Chebyshev polynomial for 0 <= x <= 6, beyond which
+   erf x is 1 (J. L. Schonfelder, Math. Comp. 32 (1978) 1232, for the form). */
+MPM__KERNEL mpm_real mpm_lane_erf(mpm_real x, mpm_real *bell)
+{
+    const mpm_real size = mpm_fabs(x), a = size > 6 ? 6 : size, t = (a - 3) / (a + 3), q = t * t;
+    const mpm_real even = MPM_R(1.2530080582697296) + q * (MPM_R(-0.047562294353451905) + q * (
+        MPM_R(-0.11927366341519752) + q * (MPM_R(-0.023770514922568674) + q * (MPM_R(0.0018886904170990681) + q * (
+        MPM_R(-0.00010515998174219724) + q * (MPM_R(4.945274787290397e-06) + q * (MPM_R(-6.903991867604761e-07) + q * (
+        MPM_R(2.914791494113244e-07) + q * (MPM_R(-4.32970612517055e-07) + q * MPM_R(-7.032937476473983e-09))))))))));
+    const mpm_real odd = MPM_R(-0.1356211061245812) + q * (MPM_R(0.12964515870276055) + q * (
+        MPM_R(0.06830802734417303) + q * (MPM_R(0.0025293918043747515) + q * (MPM_R(-0.000779831994804931) + q * (
+        MPM_R(0.00012509640947292898) + q * (MPM_R(-2.0090432504920945e-05) + q * (MPM_R(3.510240705400258e-06) + q * (
+        MPM_R(-8.432251489557363e-07) + q * MPM_R(-9.035937829820653e-08)))))))));
+    const mpm_real tail = mpm_lane_exp(-a * a), erf_a = 1 - tail * ((even + t * odd) / (1 + 2 * a));
+    *bell = tail;
+    return x < 0 ? -erf_a : erf_a;
+}
 
 /* ---- parameters ---------------------------------------------------------------------------- */
 
@@ -409,8 +538,6 @@ MPM_API mpm_status mpm_material_stress(const void *material, const mpm_block *bl
 #if defined(MPM_IMPLEMENTATION) && !defined(MPM__PTW_IMPLEMENTED)
 #define MPM__PTW_IMPLEMENTED
 
-#include <string.h>
-
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -454,28 +581,53 @@ typedef struct mpm__ptw_shared {
     mpm_real melt_exponent;  /* 2 (Gamma0 - a - 1/3) of A 2.9 */
     mpm_real cold;           /* below this temperature nothing in the range eta_low..eta_high melts */
     mpm_real eta_low, eta_high;
-    mpm_real rate_factor;    /* gamma/2 (4 pi/(3 M))^(1/3) rho0^(-1/6): gamma xidot per sqrt(mu) */
-    mpm_real cross;          /* ln r beyond which y1 r^y2 >= s0 r^s1 for certain */
+    mpm_real melt;           /* T_m where it is one for all */
+    mpm_real rate_factor;    /* gamma/2 (4 pi/(3 M))^(1/3) rho0^(-1/6): gamma xidot per sqrt(mu); 1 without PTW */
 } mpm__ptw_shared;
 
-/* What one point needs of its state, before strain and rate are known. */
-typedef struct mpm__ptw_point {
-    mpm_material_state state;  /* strain and rate are overwritten as the solution tries them */
-    mpm_real shear;            /* mu */
-    mpm_real melt, hat;        /* T_m and T/T_m */
-    mpm_real eta, log_eta;     /* rho/rho0 and its logarithm */
-    mpm_real rate_scale;       /* r = rate rate_scale eta^(1/6), from A 2.8 */
-} mpm__ptw_point;
+/* Points are worked on in groups of this many, as plain arrays on the stack. */
+enum { MPM__PTW_LANES = 64 };
+
+/* What is known of a point whose flow stress is sought, and how far the search for its increment is. */
+#define MPM__PTW_LANE_LIST(X)                                                                    \
+    X(strain)       /* plastic strain of level k */                                              \
+    X(temperature)  /* of level k, */                                                            \
+    X(density)      /* of k+1, */                                                                \
+    X(pressure)     /* of k: as a caller's law sees them */                                      \
+    X(shear)        /* mu */                                                                     \
+    X(melt)         /* T_m */                                                                    \
+    X(hat)          /* T/T_m */                                                                  \
+    X(log_eta)      /* ln(rho/rho0) */                                                           \
+    X(rate_scale)   /* r = rate rate_scale eta^(1/6), from A 2.8 */                              \
+    X(mises)        /* trial von Mises stress */                                                 \
+    X(least)        /* the smallest increment that counts */                                     \
+    X(d)            /* the increment: next to be tried, then the answer */                       \
+    X(low) X(high)  /* bracket of d */                                                           \
+    X(step)         /* the last change of d; more than high before the first */                  \
+    X(slope)        /* d flow stress / d d at the last d */                                      \
+    X(yields)       /* 1 where the flow stress at least is known to be exceeded */
+
+/* Points side by side: what is known of them, the state that a law is asked at, and its answer. */
+typedef struct mpm__ptw_group {
+    int count, lane[MPM__PTW_LANES]; /* whose they are */
+#define MPM__PTW_MEMBER(name) mpm_real name[MPM__PTW_LANES];
+    MPM__PTW_LANE_LIST(MPM__PTW_MEMBER)
+#undef MPM__PTW_MEMBER
+    mpm_real plastic_strain[MPM__PTW_LANES], plastic_rate[MPM__PTW_LANES];
+    mpm_real stress[MPM__PTW_LANES], strain_slope[MPM__PTW_LANES], rate_slope[MPM__PTW_LANES]; /* as mpm_flow */
+} mpm__ptw_group;
 
 /* The plastic strains between which the flow stress is bounded by straight lines. */
 enum { MPM__PTW_KNOTS = 6 };
 static const mpm_real mpm__ptw_knots[MPM__PTW_KNOTS] = {MPM_R(0.0),  MPM_R(0.02), MPM_R(0.06),
                                                         MPM_R(0.15), MPM_R(0.4),  MPM_R(1.5)};
 
-/* A lower bound of the static flow stress, of a solid point above 0 K: mu times the line between the values of
-   `shear` at the knots, plus `stress`. It spares most elastic points the full law. */
+/* A lower bound of the static flow stress, of a solid point above 0 K: (mu a + b)(1 - soften (T - from)) with a and b
+   on the lines between the values of `shear` and `stress` at the knots, T no less than `from`. It spares most elastic
+   points the full law. */
 typedef struct mpm__ptw_bounds {
-    mpm_real shear[MPM__PTW_KNOTS], stress;
+    mpm_real shear[MPM__PTW_KNOTS], stress[MPM__PTW_KNOTS];
+    mpm_real soften, from;
 } mpm__ptw_bounds;
 
 /* All that is known of one flow stress. To add one: a line in MPM_STRENGTH_LIST, its numbers in mpm_material, the
@@ -483,8 +635,8 @@ typedef struct mpm__ptw_bounds {
 typedef struct mpm__ptw_law {
     mpm_strength strength;
     mpm_status (*judge)(const mpm_material *m, mpm_fault *fault);  /* the numbers it reads */
-    mpm_flow (*flow)(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p); /* below melting */
-    void (*bound)(const mpm_material *m, mpm__ptw_bounds *b);      /* fills zeros; NULL: none is known */
+    void (*flow)(const mpm_material *m, mpm__ptw_group *g);        /* below melting */
+    void (*bound)(const mpm_material *m, const mpm__ptw_shared *h, mpm__ptw_bounds *b); /* fills zeros; NULL: none */
     int (*preset)(mpm_material *m, const char *metal);             /* its set for a metal, 0: none; NULL: no sets */
 } mpm__ptw_law;
 
@@ -495,21 +647,20 @@ static inline mpm_real mpm__ptw_melt(const mpm_material *m, mpm_real melt_expone
     if (m->melt == MPM_MELT_NONE) return mpm__ptw_infinity();
     if (m->melt == MPM_MELT_CONSTANT) return m->melt_temperature;
     return m->melt_temperature *
-           mpm_exp(2 * m->melt_a * (1 - 1 / eta) + melt_exponent * log_eta);
+           mpm_lane_exp(2 * m->melt_a * (1 - 1 / eta) + melt_exponent * log_eta);
 }
 
 /* mu0 - D/(exp(T0/T) - 1) (A 2.6); at T = 0 it is mu0 exactly. */
 static inline mpm_real mpm__ptw_shear_mts(const mpm_material *m, mpm_real temperature)
 {
-    if (!(temperature > 0)) return m->shear_modulus;
-    return m->shear_modulus - m->shear_d / mpm_expm1(m->shear_t / temperature);
+    return m->shear_modulus - m->shear_d / mpm_lane_expm1(m->shear_t / temperature);
 }
 
 /* mu0 (1 + A p/eta^(1/3) - B (T - 300 K)) [S]. */
 static inline mpm_real mpm__ptw_shear_scg(const mpm_material *m, mpm_real temperature, mpm_real pressure,
                                           mpm_real eta)
 {
-    mpm_real cold = 1 + m->shear_a * pressure / mpm_cbrt(eta);
+    mpm_real cold = 1 + m->shear_a * pressure / mpm_lane_pow(eta, MPM_R(1.0) / 3);
     return m->shear_modulus * (cold - m->shear_b * (temperature - 300));
 }
 
@@ -545,303 +696,329 @@ static inline void mpm__ptw_cold(const mpm_material *m, mpm__ptw_shared *h)
     h->cold *= 1 - 64 * MPM_EPSILON;
 }
 
-/* Everything about a point that does not depend on strain and rate, its shear modulus given. ln(rho/rho0) is needed
-   by the melting law and by xidot only. */
-static inline mpm__ptw_point mpm__ptw_prepare(const mpm_material *m, const mpm__ptw_shared *h,
-                                              const mpm_material_state *s, mpm_real shear)
+/* What the laws need of strain, temperature and density, that does not change while an increment is sought. */
+static inline void mpm__ptw_prepare(const mpm_material *m, const mpm__ptw_shared *h, mpm__ptw_group *g)
 {
-    mpm__ptw_point p;
-    mpm_real eta = s->density / m->density;
-    p.state = *s;
-    p.shear = shear;
-    p.eta = eta;
-    p.log_eta = 0;
-    p.rate_scale = 0;
-    if (m->melt == MPM_MELT_SCG || m->strength == MPM_STRENGTH_PTW) p.log_eta = mpm_log(eta);
-    p.melt = mpm__ptw_melt(m, h->melt_exponent, p.log_eta, eta);
-    p.hat = s->temperature / p.melt;
-    if (m->strength == MPM_STRENGTH_PTW)
-        p.rate_scale = 1 / (h->rate_factor * mpm_sqrt(shear));
-    return p;
+    const mpm_real per_density = 1 / m->density;
+    int i;
+    for (i = 0; i < g->count; i++) g->log_eta[i] = mpm_lane_log(g->density[i] * per_density);
+    if (m->melt == MPM_MELT_SCG)
+        for (i = 0; i < g->count; i++)
+            g->melt[i] = mpm__ptw_melt(m, h->melt_exponent, g->log_eta[i], g->density[i] * per_density);
+    else
+        for (i = 0; i < g->count; i++) g->melt[i] = h->melt;
+    for (i = 0; i < g->count; i++) g->hat[i] = g->temperature[i] / g->melt[i];
+    for (i = 0; i < g->count; i++) g->rate_scale[i] = 1 / (h->rate_factor * mpm_sqrt(g->shear[i]));
 }
 
 /* ---- Preston-Tonks-Wallace ------------------------------------------------------------------- */
 
 /* Saturation and yield stress over 2 mu, and their slopes with respect to L = ln r. */
 typedef struct mpm__ptw_levels {
-    mpm_real s, y, s_slope, y_slope;
+    mpm_real s[MPM__PTW_LANES], y[MPM__PTW_LANES], s_slope[MPM__PTW_LANES], y_slope[MPM__PTW_LANES];
+    mpm_real x[MPM__PTW_LANES], x_slope[MPM__PTW_LANES]; /* argument of the erf */
 } mpm__ptw_levels;
 
-/* The erf terms of A 2.7, s0 - (s0 - sinf) erf x and y0 - (y0 - yinf) erf x, with dx/dL = slope (<= 0). */
-static inline void mpm__ptw_thermal(const mpm_ptw *c, mpm_real x, mpm_real slope, mpm__ptw_levels *v)
+/* The power laws of A 2.7, s0 r^s1 and min(y1 r^y2, s0 r^s1), and the argument of its erf, x = kappa T_hat ln(1/r).
+   s0 r^s1 is computed once, so that tau_s = tau_y exactly where both follow it. A rate of 0 lets heat do all it can,
+   erf = 1; at T = 0 there is no heat: erf = 0 at any rate. */
+static inline void mpm__ptw_powers(const mpm_material *m, const mpm__ptw_group *g, mpm__ptw_levels *v)
+{
+    const mpm_ptw c = m->ptw;
+    const mpm_real least = m->erf_literal ? -mpm__ptw_infinity() : 0;
+    int i;
+    for (i = 0; i < g->count; i++) {
+        const mpm_real moves = g->plastic_rate[i] > 0 ? MPM_R(1.0) : MPM_R(0.0);
+        const mpm_real heat = g->temperature[i] > 0 ? MPM_R(6.0) : MPM_R(0.0);
+        const mpm_real L = mpm_lane_log(g->plastic_rate[i] * g->rate_scale[i]) + g->log_eta[i] / 6;
+        const mpm_real shock = moves * c.s0 * mpm_lane_exp(c.s1 * L);
+        const mpm_real power = moves * c.y1 * mpm_lane_exp(c.y2 * L), slope = -c.kappa * g->hat[i], x = slope * L;
+        v->s[i] = shock;
+        v->s_slope[i] = c.s1 * shock;
+        v->y[i] = power < shock ? power : shock;
+        v->y_slope[i] = power < shock ? c.y2 * power : c.s1 * shock;
+        v->x[i] = moves > 0 ? (x < least ? 0 : x) : heat;
+        v->x_slope[i] = moves > 0 ? (x < least ? 0 : slope) : 0;
+    }
+}
+
+/* Whether both erf terms certainly stay below the power laws, for all. For x >= 0, 1 - erf x <= exp(-x^2) <=
+   1/(1 + x^2 + x^4/2 + x^6/6), which needs neither erf nor exp. */
+static inline int mpm__ptw_thermal_hidden(const mpm_ptw *c, mpm__ptw_levels *v, int n)
+{
+    const mpm_real safe = 1 + 8 * MPM_EPSILON;
+    mpm_real shown = 0;
+    int i;
+    for (i = 0; i < n; i++) {
+        const mpm_real q = v->x[i] * v->x[i], tail = safe / (1 + q * (1 + q * (MPM_R(0.5) + q / 6)));
+        const mpm_real s = (c->sinf + (c->s0 - c->sinf) * tail) * safe;
+        const mpm_real y = (c->yinf + (c->y0 - c->yinf) * tail) * safe;
+        shown = v->x[i] >= 0 && s < v->s[i] && y < v->y[i] ? shown : 1;
+    }
+    return !(shown > 0);
+}
+
+/* tau_s = max(s0 - (s0 - sinf) erf x, s0 r^s1), tau_y = max(y0 - (y0 - yinf) erf x, min(y1 r^y2, s0 r^s1)) (A 2.7). */
+static inline void mpm__ptw_thermal(const mpm_ptw *c, mpm__ptw_levels *v, int n)
 {
     const mpm_real two_over_root_pi = MPM_R(1.12837916709551257390);
-    /* erf is 1 to the last bit of a double from 5.93 on, and of a float well before. */
-    mpm_real erf_x = x >= 6 ? 1 : mpm_erf(x);
-    mpm_real bell = x >= 6 ? 0 : -slope * two_over_root_pi * mpm_exp(-x * x);
-    v->s = c->s0 - (c->s0 - c->sinf) * erf_x;
-    v->y = c->y0 - (c->y0 - c->yinf) * erf_x;
-    v->s_slope = (c->s0 - c->sinf) * bell;
-    v->y_slope = (c->y0 - c->yinf) * bell;
-}
-
-/* Whether both erf terms certainly stay below the power laws `shock` and `low`. For x >= 0,
-   1 - erf x <= exp(-x^2) <= 1/(1 + x^2 + x^4/2 + x^6/6), which needs neither erf nor exp. */
-static inline int mpm__ptw_thermal_hidden(const mpm_ptw *c, mpm_real x, mpm_real shock, mpm_real low)
-{
-    mpm_real q = x * x;
-    mpm_real tail = (1 + 8 * MPM_EPSILON) / (1 + q * (1 + q * (MPM_R(0.5) + q / 6)));
-    mpm_real s = (c->sinf + (c->s0 - c->sinf) * tail) * (1 + 8 * MPM_EPSILON);
-    mpm_real y = (c->yinf + (c->y0 - c->yinf) * tail) * (1 + 8 * MPM_EPSILON);
-    return x >= 0 && s < shock && y < low;
-}
-
-/* tau_s = max(s0 - (s0 - sinf) erf x, s0 r^s1), tau_y = max(y0 - (y0 - yinf) erf x, min(y1 r^y2, s0 r^s1)) (A 2.7)
-   with x = kappa T_hat ln(1/r), T_hat = T/T_m, L = ln r. The shock term s0 r^s1 is computed once, so that
-   tau_s = tau_y exactly where both follow it. */
-static inline mpm__ptw_levels mpm__ptw_saturation(const mpm_material *m, const mpm__ptw_shared *h,
-                                                  mpm_real T_hat, mpm_real L)
-{
-    const mpm_ptw *c = &m->ptw;
-    mpm_real shock = c->s0 * mpm_exp(c->s1 * L);
-    mpm_real low = shock, low_slope = c->s1 * shock;
-    mpm_real x = -c->kappa * T_hat * L, x_slope = -c->kappa * T_hat;
-    mpm__ptw_levels v;
-    if (L < h->cross) {
-        mpm_real power = c->y1 * mpm_exp(c->y2 * L);
-        if (power < shock) {
-            low = power;
-            low_slope = c->y2 * power;
-        }
+    int i;
+    for (i = 0; i < n; i++) {
+        mpm_real bell;
+        const mpm_real erf_x = mpm_lane_erf(v->x[i], &bell), tilt = -v->x_slope[i] * two_over_root_pi * bell;
+        const mpm_real s = c->s0 - (c->s0 - c->sinf) * erf_x, y = c->y0 - (c->y0 - c->yinf) * erf_x;
+        const mpm_real s_tilt = (c->s0 - c->sinf) * tilt, y_tilt = (c->y0 - c->yinf) * tilt;
+        v->s_slope[i] = v->s[i] >= s ? v->s_slope[i] : s_tilt;
+        v->y_slope[i] = v->y[i] >= y ? v->y_slope[i] : y_tilt;
+        v->s[i] = v->s[i] >= s ? v->s[i] : s;
+        v->y[i] = v->y[i] >= y ? v->y[i] : y;
     }
-    if (x < 0 && !m->erf_literal) x = x_slope = 0;
-    if (mpm__ptw_thermal_hidden(c, x, shock, low)) {
-        v.s = v.y = 0;
-        v.s_slope = v.y_slope = 0;
-    } else {
-        mpm__ptw_thermal(c, x, x_slope, &v);
-    }
-    if (shock >= v.s) {
-        v.s = shock;
-        v.s_slope = c->s1 * shock;
-    }
-    if (low >= v.y) {
-        v.y = low;
-        v.y_slope = low_slope;
-    }
-    return v;
-}
-
-/* A rate of zero lets heat do all it can: erf = 1. At T = 0 there is no heat: erf = 0 at any rate. */
-static inline mpm__ptw_levels mpm__ptw_static_levels(const mpm_ptw *c, mpm_real temperature)
-{
-    mpm__ptw_levels v;
-    mpm__ptw_thermal(c, temperature > 0 ? MPM_R(6.0) : MPM_R(0.0), 0, &v);
-    return v;
 }
 
 /* The Voce limit d = 0 of A 2.4: tau = tau_s - (tau_s - tau_y) exp(-theta eps/(tau_s - tau_y)). */
-static inline mpm_flow mpm__ptw_voce(const mpm_ptw *c, const mpm__ptw_levels *v, mpm_real strain)
+static inline void mpm__ptw_voce(const mpm_ptw *c, mpm__ptw_levels *v, mpm__ptw_group *g)
 {
-    mpm_real gap = v->s - v->y, gap_slope = v->s_slope - v->y_slope;
-    mpm_real u = c->theta * strain / gap, e = mpm_exp(-u);
-    mpm_flow f;
-    f.stress = v->s - gap * e;
-    f.strain_slope = c->theta * e;
-    f.rate_slope = v->s_slope - gap_slope * e * (1 + u);
-    return f;
+    int i;
+    for (i = 0; i < g->count; i++) {
+        const mpm_real gap = v->s[i] - v->y[i], gap_slope = v->s_slope[i] - v->y_slope[i];
+        const mpm_real u = c->theta * g->plastic_strain[i] / gap, e = gap > 0 ? mpm_lane_exp(-u) : 0;
+        g->stress[i] = v->s[i] - (gap > 0 ? gap * e : 0);
+        g->strain_slope[i] = c->theta * e;
+        g->rate_slope[i] = v->s_slope[i] - (gap > 0 ? gap_slope * e * (1 + u) : 0);
+    }
+}
+
+/* A 2.4 over 2 mu for tau_s > tau_y, written as tau = tau_y + alpha ln W with W = 1 + psi (1 - exp(-z)), z =
+   theta eps/(alpha psi), alpha = (s0 - tau_y)/d: the same number, exactly tau_y at zero strain. Saturated where
+   beta = (tau_s - tau_y)/alpha and psi = exp(beta) - 1 vanish. */
+static inline void mpm__ptw_harden(const mpm_ptw *c, mpm__ptw_levels *v, mpm__ptw_group *g)
+{
+    int i;
+    for (i = 0; i < g->count; i++) {
+        const mpm_real s = v->s[i], y = v->y[i], gap = s - y, alpha = (c->s0 - y) / c->d;
+        const mpm_real per_alpha = 1 / alpha, beta = gap * per_alpha, psi = mpm_lane_expm1(beta), per_psi = 1 / psi;
+        const mpm_real z = c->theta * g->plastic_strain[i] * per_alpha * per_psi, gone = -mpm_lane_expm1(-z);
+        const mpm_real left = 1 - gone, W = 1 + psi * gone, log_W = mpm_lane_log(W), per_W = 1 / W;
+        const mpm_real alpha_slope = -v->y_slope[i] / c->d;
+        const mpm_real beta_slope = (v->s_slope[i] - v->y_slope[i] - beta * alpha_slope) * per_alpha;
+        const mpm_real psi_slope = (1 + psi) * beta_slope;
+        const mpm_real z_slope = -z * (alpha_slope * per_alpha + psi_slope * per_psi);
+        const mpm_real W_slope = psi_slope * gone + psi * left * z_slope;
+        const mpm_real stress = y + alpha * log_W, strain_slope = c->theta * left * per_W;
+        const mpm_real rate_slope = v->y_slope[i] + alpha_slope * log_W + alpha * W_slope * per_W;
+        const mpm_real hardens = gap > 0 && !(gap < alpha * MPM_EPSILON) ? MPM_R(1.0) : MPM_R(0.0);
+        g->stress[i] = hardens > 0 ? stress : s;
+        g->strain_slope[i] = hardens > 0 ? strain_slope : 0;
+        g->rate_slope[i] = hardens > 0 ? rate_slope : v->s_slope[i];
+    }
 }
 
 /* alpha < 0 (tau_y > s0): tau_s + alpha ln(1 - psi exp t), t = -beta - theta eps/(alpha psi) (A 2.4) as printed, the
    exponential taken out where it would overflow. */
-static inline mpm_flow mpm__ptw_harden_negative(const mpm_ptw *c, const mpm__ptw_levels *v,
-                                                mpm_real strain, mpm_real alpha)
+static inline mpm_flow mpm__ptw_harden_negative(const mpm_ptw *c, mpm_real s, mpm_real y, mpm_real s_slope,
+                                                mpm_real strain)
 {
-    mpm_real beta = (v->s - v->y) / alpha, psi = mpm_expm1(beta);
+    mpm_real alpha = (c->s0 - y) / c->d, beta = (s - y) / alpha, psi = mpm_expm1(beta);
     mpm_real t = -beta - c->theta * strain / (alpha * psi);
     mpm_real e = mpm_exp(-mpm_fabs(t));
     mpm_flow f;
-    f.stress = v->s + alpha * (t > 0 ? t + mpm_log(e - psi) : mpm_log(1 - psi * e));
+    f.stress = s + alpha * (t > 0 ? t + mpm_log(e - psi) : mpm_log(1 - psi * e));
     f.strain_slope = t > 0 ? c->theta / (e - psi) : c->theta * e / (1 - psi * e);
-    f.rate_slope = v->s_slope;
-    return f;
-}
-
-/* A 2.4 over 2 mu for tau_s > tau_y, written as tau = tau_y + alpha ln W with
-   W = 1 + psi (1 - exp(-z)), z = theta eps/(alpha psi): the same number, exactly tau_y at zero
-   strain. */
-static inline mpm_flow mpm__ptw_harden_positive(const mpm_ptw *c, const mpm__ptw_levels *v,
-                                                mpm_real strain, mpm_real alpha)
-{
-    mpm_real beta = (v->s - v->y) / alpha;
-    mpm_real psi = mpm_expm1(beta), z = c->theta * strain / (alpha * psi);
-    mpm_real gone = -mpm_expm1(-z), left = 1 - gone;
-    mpm_real W = 1 + psi * gone, log_W = mpm_log(W);
-    mpm_real alpha_slope = -v->y_slope / c->d;
-    mpm_real beta_slope = (v->s_slope - v->y_slope - beta * alpha_slope) / alpha;
-    mpm_real psi_slope = (1 + psi) * beta_slope;
-    mpm_real z_slope = -z * (alpha_slope / alpha + psi_slope / psi);
-    mpm_real W_slope = psi_slope * gone + psi * left * z_slope;
-    mpm_flow f;
-    f.stress = v->y + alpha * log_W;
-    f.strain_slope = c->theta * left / W;
-    f.rate_slope = v->y_slope + alpha_slope * log_W + alpha * W_slope / W;
+    f.rate_slope = s_slope;
     return f;
 }
 
 /* alpha -> 0 from above (or beta too large for exp): psi (1 - exp(-z)) -> theta eps/alpha, so that
    tau = tau_y + alpha ln(1 + theta eps/alpha). */
-static inline mpm_flow mpm__ptw_harden_steep(const mpm_ptw *c, const mpm__ptw_levels *v,
-                                             mpm_real strain, mpm_real alpha)
+static inline mpm_flow mpm__ptw_harden_steep(const mpm_ptw *c, mpm_real y, mpm_real y_slope, mpm_real strain)
 {
     mpm_flow f;
-    mpm_real w = alpha > 0 ? c->theta * strain / alpha : 0;
-    f.stress = v->y + (alpha > 0 ? alpha * mpm_log(1 + w) : 0);
+    mpm_real alpha = (c->s0 - y) / c->d, w = alpha > 0 ? c->theta * strain / alpha : 0;
+    f.stress = y + (alpha > 0 ? alpha * mpm_log(1 + w) : 0);
     f.strain_slope = c->theta / (1 + w);
-    f.rate_slope = v->y_slope;
+    f.rate_slope = y_slope;
     return f;
+}
+
+/* The rare limits of A 2.4, at alpha <= 0 and near it, one by one. */
+static inline void mpm__ptw_harden_limits(const mpm_ptw *c, mpm__ptw_levels *v, mpm__ptw_group *g)
+{
+    int i;
+    for (i = 0; i < g->count; i++) {
+        const mpm_real gap = v->s[i] - v->y[i], alpha = (c->s0 - v->y[i]) / c->d;
+        mpm_flow f;
+        if (!(gap > 0) || gap < 80 * alpha) continue;
+        f = alpha < 0 ? mpm__ptw_harden_negative(c, v->s[i], v->y[i], v->s_slope[i], g->plastic_strain[i])
+                      : mpm__ptw_harden_steep(c, v->y[i], v->y_slope[i], g->plastic_strain[i]);
+        g->stress[i] = f.stress;
+        g->strain_slope[i] = f.strain_slope;
+        g->rate_slope[i] = f.rate_slope;
+    }
 }
 
 /* tau = tau_s + alpha ln(1 - psi exp(-beta - theta eps/(alpha psi))) (A 2.4, 2.5), sigma over 2 mu, with all its
    limits. */
-static inline mpm_flow mpm__ptw_harden(const mpm_ptw *c, const mpm__ptw_levels *v, mpm_real strain)
+static inline void mpm__ptw_stress_over_2_mu(const mpm_ptw *c, mpm__ptw_levels *v, mpm__ptw_group *g)
 {
-    mpm_flow f;
-    mpm_real gap = v->s - v->y, alpha;
-    f.stress = v->s;
-    f.strain_slope = 0;
-    f.rate_slope = v->s_slope;
-    if (!(gap > 0)) return f; /* beta = psi = 0: saturated */
-    if (!(c->d > 0)) return mpm__ptw_voce(c, v, strain);
-    alpha = (c->s0 - v->y) / c->d;
-    if (alpha < 0) return mpm__ptw_harden_negative(c, v, strain, alpha);
-    if (!(gap < 80 * alpha)) return mpm__ptw_harden_steep(c, v, strain, alpha);
-    if (gap < alpha * MPM_EPSILON) return f;
-    return mpm__ptw_harden_positive(c, v, strain, alpha);
+    if (!(c->d > 0)) {
+        mpm__ptw_voce(c, v, g);
+    } else {
+        mpm__ptw_harden(c, v, g);
+        mpm__ptw_harden_limits(c, v, g);
+    }
 }
 
 /* sigma = 2 mu tau(eps, ln r, T_hat), r = rate/(gamma xidot) (A 2.4 - 2.8). */
-static inline mpm_flow mpm__ptw_flow_ptw(const mpm_material *m, const mpm__ptw_shared *h,
-                                         const mpm__ptw_point *p)
+static inline void mpm__ptw_flow_ptw(const mpm_material *m, mpm__ptw_group *g)
 {
-    mpm_real strain = p->state.plastic_strain, rate = p->state.plastic_rate;
     mpm__ptw_levels v;
-    mpm_flow f;
-    if (rate > 0)
-        v = mpm__ptw_saturation(m, h, p->hat, mpm_log(rate * p->rate_scale) + p->log_eta / 6);
-    else
-        v = mpm__ptw_static_levels(&m->ptw, p->state.temperature);
-    f = mpm__ptw_harden(&m->ptw, &v, strain);
-    f.stress *= 2 * p->shear;
-    f.strain_slope *= 2 * p->shear;
-    f.rate_slope *= 2 * p->shear;
-    return f;
+    int i;
+    mpm__ptw_powers(m, g, &v);
+    if (!mpm__ptw_thermal_hidden(&m->ptw, &v, g->count)) mpm__ptw_thermal(&m->ptw, &v, g->count);
+    mpm__ptw_stress_over_2_mu(&m->ptw, &v, g);
+    for (i = 0; i < g->count; i++) {
+        g->stress[i] *= 2 * g->shear[i];
+        g->strain_slope[i] *= 2 * g->shear[i];
+        g->rate_slope[i] *= 2 * g->shear[i];
+    }
 }
 
 /* At rate 0 the stress over mu is a rising concave function of strain alone: the chords lie below it. */
-static inline void mpm__ptw_bound_ptw(const mpm_material *m, mpm__ptw_bounds *b)
+static inline void mpm__ptw_bound_ptw(const mpm_material *m, const mpm__ptw_shared *h, mpm__ptw_bounds *b)
 {
-    const mpm__ptw_levels v = mpm__ptw_static_levels(&m->ptw, 1);
+    mpm__ptw_group g;
+    mpm__ptw_levels v;
     int i;
-    for (i = 0; i < MPM__PTW_KNOTS; i++) b->shear[i] = 2 * mpm__ptw_harden(&m->ptw, &v, mpm__ptw_knots[i]).stress;
+    (void)h;
+    g.count = MPM__PTW_KNOTS;
+    for (i = 0; i < MPM__PTW_KNOTS; i++) {
+        g.plastic_strain[i] = mpm__ptw_knots[i];
+        v.s[i] = v.y[i] = v.s_slope[i] = v.y_slope[i] = v.x_slope[i] = 0;
+        v.x[i] = 6;
+    }
+    mpm__ptw_thermal(&m->ptw, &v, g.count);
+    mpm__ptw_stress_over_2_mu(&m->ptw, &v, &g);
+    for (i = 0; i < MPM__PTW_KNOTS; i++) b->shear[i] = 2 * g.stress[i];
 }
 
-/* Whether a rate lies beyond r = 1: r^6 = (rate rate_scale)^6 eta needs no logarithm. */
-static inline int mpm__ptw_overdriven(const mpm__ptw_point *p, mpm_real rate)
+/* Whether a rate lies beyond r = 1. */
+static inline int mpm__ptw_overdriven(const mpm__ptw_group *g, int i, mpm_real rate)
 {
-    mpm_real r = rate * p->rate_scale, cube = r * r * r;
-    return cube * cube * p->eta > 1;
+    return mpm_lane_log(rate * g->rate_scale[i]) + g->log_eta[i] / 6 > 0;
 }
 
 /* ---- the other strengths ------------------------------------------------------------------- */
 
 /* sigma = infinity. */
-static inline mpm_flow mpm__ptw_flow_elastic(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
+static inline void mpm__ptw_flow_elastic(const mpm_material *m, mpm__ptw_group *g)
 {
-    mpm_flow f;
+    int i;
     (void)m;
-    (void)h;
-    (void)p;
-    f.stress = mpm__ptw_infinity();
-    f.strain_slope = f.rate_slope = 0;
-    return f;
+    for (i = 0; i < g->count; i++) {
+        g->stress[i] = mpm__ptw_infinity();
+        g->strain_slope[i] = g->rate_slope[i] = 0;
+    }
 }
 
 /* sigma = strength_fn(point). */
-static inline mpm_flow mpm__ptw_flow_user(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
+static inline void mpm__ptw_flow_user(const mpm_material *m, mpm__ptw_group *g)
 {
-    (void)h;
-    return m->strength_fn(m->strength_context, m, &p->state);
+    int i;
+    for (i = 0; i < g->count; i++) {
+        mpm_material_state s;
+        mpm_flow f;
+        s.plastic_strain = g->plastic_strain[i];
+        s.plastic_rate = g->plastic_rate[i];
+        s.temperature = g->temperature[i];
+        s.density = g->density[i];
+        s.pressure = g->pressure[i];
+        f = m->strength_fn(m->strength_context, m, &s);
+        g->stress[i] = f.stress;
+        g->strain_slope[i] = f.strain_slope;
+        g->rate_slope[i] = f.rate_slope;
+    }
 }
 
 /* sigma = Y + H eps, at least 0. */
-static inline mpm_flow mpm__ptw_flow_linear(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
+static inline void mpm__ptw_flow_linear(const mpm_material *m, mpm__ptw_group *g)
 {
-    mpm_flow f;
-    (void)h;
-    f.stress = m->linear_yield + m->linear_hardening * p->state.plastic_strain;
-    f.strain_slope = m->linear_hardening;
-    f.rate_slope = 0;
-    if (f.stress < 0) f.stress = f.strain_slope = 0; /* softened to nothing */
-    return f;
+    int i;
+    for (i = 0; i < g->count; i++) {
+        const mpm_real stress = m->linear_yield + m->linear_hardening * g->plastic_strain[i];
+        g->stress[i] = stress < 0 ? 0 : stress; /* softened to nothing */
+        g->strain_slope[i] = stress < 0 ? 0 : m->linear_hardening;
+        g->rate_slope[i] = 0;
+    }
 }
 
 /* sigma >= Y where it hardens. */
-static inline void mpm__ptw_bound_linear(const mpm_material *m, mpm__ptw_bounds *b)
+static inline void mpm__ptw_bound_linear(const mpm_material *m, const mpm__ptw_shared *h, mpm__ptw_bounds *b)
 {
-    if (m->linear_hardening >= 0) b->stress = m->linear_yield;
+    int i;
+    (void)h;
+    for (i = 0; i < MPM__PTW_KNOTS; i++) b->stress[i] = m->linear_hardening >= 0 ? m->linear_yield : 0;
 }
 
-/* d (b eps^n)/d eps. With n < 1 it starts at infinity; at zero strain (only) it is therefore taken at the elastic
-   strain of first yield, a/(3 mu). */
-static inline mpm_real mpm__ptw_slope_jc(const mpm_jc *c, mpm_real strain, mpm_real hardened, mpm_real shear)
+/* sigma = (a + b eps^n) (1 + c ln(rate/rate0)) (1 - T*^m), T* = (T - T0)/(T_m - T0) [JC]. With n < 1 its slope b n
+   eps^(n-1) starts at infinity; at zero strain (only) it is therefore taken at the elastic strain of first yield,
+   a/(3 mu). */
+static inline void mpm__ptw_flow_jc(const mpm_material *m, mpm__ptw_group *g)
 {
-    mpm_real first = c->a / (3 * shear);
-    if (!(c->b > 0)) return 0;
-    if (strain > 0) return c->n * hardened / strain;
-    return first > 0 ? c->n * (c->b * mpm_pow(first, c->n)) / first : 0;
+    const mpm_jc c = m->jc; /* by value: known not to be what the loop writes */
+    int i;
+    for (i = 0; i < g->count; i++) {
+        const mpm_real T_star = (g->temperature[i] - c.temperature) / (g->melt[i] - c.temperature);
+        const mpm_real soft = T_star > 0 ? 1 - mpm_lane_pow(T_star, c.m) : 1;
+        const mpm_real strain = g->plastic_strain[i], first = c.a / (3 * g->shear[i]);
+        const mpm_real at = strain > 0 ? strain : first, raised = c.b * mpm_lane_pow(at, c.n);
+        const mpm_real log_rate = mpm_lane_log(g->plastic_rate[i] / c.rate), above = log_rate > 0 ? 1 : 0;
+        const mpm_real fast = 1 + c.c * (log_rate > 0 ? log_rate : 0), hard = c.a + (strain > 0 ? raised : 0);
+        g->stress[i] = hard * fast * soft;
+        g->strain_slope[i] = (at > 0 ? c.n * raised / at : 0) * fast * soft;
+        g->rate_slope[i] = above * hard * soft * c.c;
+    }
 }
 
-/* sigma = (a + b eps^n) (1 + c ln(rate/rate0)) (1 - T*^m), T* = (T - T0)/(T_m - T0) [JC]. */
-static inline mpm_flow mpm__ptw_flow_jc(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
+/* The law at its reference rate, concave in strain for n <= 1, so that chords lie below it; for more, the value at zero
+   strain. 1 - T*^m >= 1 - T* for m >= 1, with the lowest T_m there is. */
+static inline void mpm__ptw_bound_jc(const mpm_material *m, const mpm__ptw_shared *h, mpm__ptw_bounds *b)
 {
     const mpm_jc *c = &m->jc;
-    mpm_real strain = p->state.plastic_strain, rate = p->state.plastic_rate;
-    mpm_real T_star = (p->state.temperature - c->temperature) / (p->melt - c->temperature);
-    mpm_real soft = T_star > 0 ? 1 - mpm_pow(T_star, c->m) : 1;
-    mpm_real hard = c->a + (strain > 0 ? c->b * mpm_pow(strain, c->n) : 0);
-    mpm_real fast = rate > c->rate ? 1 + c->c * mpm_log(rate / c->rate) : 1;
-    mpm_flow f;
-    (void)h;
-    f.stress = hard * fast * soft;
-    f.strain_slope = mpm__ptw_slope_jc(c, strain, hard - c->a, p->shear) * fast * soft;
-    f.rate_slope = rate > c->rate ? hard * soft * c->c : 0;
-    return f;
+    int i;
+    if (c->m < 1) return;
+    for (i = 0; i < MPM__PTW_KNOTS; i++) {
+        const mpm_real strain = c->n > 1 ? 0 : mpm__ptw_knots[i];
+        b->stress[i] = c->a + (strain > 0 ? c->b * mpm_lane_pow(strain, c->n) : 0);
+    }
+    b->from = c->temperature;
+    b->soften = 1 / mpm__ptw_max(h->cold - c->temperature, 0);
 }
 
 /* sigma = min(y0 (1 + beta eps)^n, ymax) mu/mu0 [S]. */
-static inline mpm_flow mpm__ptw_flow_scg(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
+static inline void mpm__ptw_flow_scg(const mpm_material *m, mpm__ptw_group *g)
 {
-    const mpm_scg *c = &m->scg;
-    mpm_real stretch = 1 + c->beta * p->state.plastic_strain;
-    mpm_real hard = c->y0 * mpm_pow(stretch, c->n), scale = p->shear / m->shear_modulus;
-    mpm_flow f;
-    (void)h;
-    f.stress = mpm__ptw_min(hard, c->ymax) * scale;
-    f.strain_slope = hard < c->ymax ? c->n * c->beta * hard / stretch * scale : 0;
-    f.rate_slope = 0;
-    return f;
+    const mpm_scg c = m->scg;
+    const mpm_real per_modulus = 1 / m->shear_modulus;
+    int i;
+    for (i = 0; i < g->count; i++) {
+        const mpm_real stretch = 1 + c.beta * g->plastic_strain[i], hard = c.y0 * mpm_lane_pow(stretch, c.n);
+        const mpm_real scale = g->shear[i] * per_modulus, slope = c.n * c.beta * hard / stretch * scale;
+        g->stress[i] = mpm__ptw_min(hard, c.ymax) * scale;
+        g->strain_slope[i] = hard < c.ymax ? slope : 0;
+        g->rate_slope[i] = 0;
+    }
 }
 
 /* min(y0 (1 + beta eps)^n, ymax)/mu0: concave for n <= 1, so that chords lie below it; for more, the value at zero
    strain. */
-static inline void mpm__ptw_bound_scg(const mpm_material *m, mpm__ptw_bounds *b)
+static inline void mpm__ptw_bound_scg(const mpm_material *m, const mpm__ptw_shared *h, mpm__ptw_bounds *b)
 {
     const mpm_scg *c = &m->scg;
     int i;
+    (void)h;
     for (i = 0; i < MPM__PTW_KNOTS; i++) {
         mpm_real strain = c->n > 1 ? 0 : mpm__ptw_knots[i];
-        b->shear[i] = mpm__ptw_min(c->y0 * mpm_pow(1 + c->beta * strain, c->n), c->ymax) / m->shear_modulus;
+        b->shear[i] = mpm__ptw_min(c->y0 * mpm_lane_pow(1 + c->beta * strain, c->n), c->ymax) / m->shear_modulus;
     }
 }
 
@@ -1159,7 +1336,7 @@ static inline mpm_status mpm__ptw_check_user(const mpm_material *m, mpm_fault *f
 static const mpm__ptw_law mpm__ptw_laws[] = {
     {MPM_STRENGTH_ELASTIC, mpm__ptw_check_elastic, mpm__ptw_flow_elastic, NULL, mpm__ptw_use_elastic},
     {MPM_STRENGTH_LINEAR, mpm__ptw_check_linear, mpm__ptw_flow_linear, mpm__ptw_bound_linear, mpm__ptw_use_linear},
-    {MPM_STRENGTH_JC, mpm__ptw_check_jc, mpm__ptw_flow_jc, NULL, mpm__ptw_use_jc},
+    {MPM_STRENGTH_JC, mpm__ptw_check_jc, mpm__ptw_flow_jc, mpm__ptw_bound_jc, mpm__ptw_use_jc},
     {MPM_STRENGTH_SCG, mpm__ptw_check_scg, mpm__ptw_flow_scg, mpm__ptw_bound_scg, mpm__ptw_use_scg},
     {MPM_STRENGTH_PTW, mpm__ptw_check_ptw, mpm__ptw_flow_ptw, mpm__ptw_bound_ptw, mpm__ptw_use_ptw},
     {MPM_STRENGTH_USER, mpm__ptw_check_user, mpm__ptw_flow_user, NULL, NULL}
@@ -1192,22 +1369,22 @@ static inline mpm__ptw_shared mpm__ptw_share(const mpm_material *m)
     mpm__ptw_shared h;
     h.law = mpm__ptw_law_of(m->strength);
     mpm__ptw_cold(m, &h);
-    h.rate_factor = 0;
-    h.cross = mpm__ptw_infinity();
+    h.melt = m->melt == MPM_MELT_SCG ? 0 : mpm__ptw_melt(m, 0, 0, 1);
+    h.rate_factor = 1;
     if (m->strength == MPM_STRENGTH_PTW) {
         mpm_real atoms = mpm_cbrt(4 * MPM_PI * m->density / (3 * c->atomic_mass));
         h.rate_factor = c->gamma * atoms / (2 * mpm_sqrt(m->density));
-        if (c->y2 > c->s1)
-            h.cross = mpm_log(c->s0 / c->y1) / (c->y2 - c->s1) + MPM_R(0.01);
     }
     return h;
 }
 
-static inline mpm_flow mpm__ptw_flow(const mpm_material *m, const mpm__ptw_shared *h, const mpm__ptw_point *p)
+/* The flow stress of a group, 0 where molten. */
+static inline void mpm__ptw_flow(const mpm_material *m, const mpm__ptw_shared *h, mpm__ptw_group *g)
 {
-    mpm_flow f;
-    f.stress = f.strain_slope = f.rate_slope = 0;
-    return p->state.temperature >= p->melt ? f : h->law->flow(m, h, p);
+    int i;
+    h->law->flow(m, g);
+    for (i = 0; i < g->count; i++)
+        if (g->temperature[i] >= g->melt[i]) g->stress[i] = g->strain_slope[i] = g->rate_slope[i] = 0;
 }
 
 /* The bound of the material's strength. The staged return yields at the flow stress of an earlier step: only the value
@@ -1218,9 +1395,11 @@ static inline mpm__ptw_bounds mpm__ptw_bound(const mpm_material *m, const mpm__p
     mpm__ptw_bounds b;
     int i;
     memset(&b, 0, sizeof b);
-    if (h->law->bound) h->law->bound(m, &b);
-    b.stress *= safe;
-    for (i = MPM__PTW_KNOTS - 1; i >= 0; i--) b.shear[i] = safe * b.shear[m->mapping == MPM_RETURN_STAGED ? 0 : i];
+    if (h->law->bound) h->law->bound(m, h, &b);
+    for (i = MPM__PTW_KNOTS - 1; i >= 0; i--) {
+        b.shear[i] = safe * b.shear[m->mapping == MPM_RETURN_STAGED ? 0 : i];
+        b.stress[i] = safe * b.stress[m->mapping == MPM_RETURN_STAGED ? 0 : i];
+    }
     return b;
 }
 
@@ -1361,8 +1540,21 @@ MPM_API mpm_real mpm_material_attempt_rate(const mpm_material *m, const mpm_mate
 MPM_API mpm_flow mpm_material_flow(const mpm_material *m, const mpm_material_state *s)
 {
     mpm__ptw_shared h = mpm__ptw_share(m);
-    mpm__ptw_point p = mpm__ptw_prepare(m, &h, s, mpm_material_shear_modulus(m, s));
-    return mpm__ptw_flow(m, &h, &p);
+    mpm__ptw_group g;
+    mpm_flow f;
+    g.count = 1;
+    g.plastic_strain[0] = s->plastic_strain;
+    g.plastic_rate[0] = s->plastic_rate;
+    g.temperature[0] = s->temperature;
+    g.density[0] = s->density;
+    g.pressure[0] = s->pressure;
+    g.shear[0] = mpm_material_shear_modulus(m, s);
+    mpm__ptw_prepare(m, &h, &g);
+    mpm__ptw_flow(m, &h, &g);
+    f.stress = g.stress[0];
+    f.strain_slope = g.strain_slope[0];
+    f.rate_slope = g.rate_slope[0];
+    return f;
 }
 
 MPM_API mpm_real mpm_material_flow_stress(const mpm_material *m, const mpm_material_state *s)
@@ -1409,9 +1601,7 @@ MPM_API void mpm_material_wave_speeds(const mpm_material *m, mpm_real density, m
 
 /* ---- the update ---------------------------------------------------------------------------- */
 
-/* Points are worked on in groups of this many, as plain arrays on the stack. */
-enum { MPM__PTW_LANES = 64 };
-
+/* A group of points in the update. */
 typedef struct mpm__ptw_lanes {
     int first, count;
     mpm_real rotated[6][MPM__PTW_LANES];  /* deviator of level k, rotated */
@@ -1424,11 +1614,12 @@ typedef struct mpm__ptw_lanes {
     mpm_real volume[MPM__PTW_LANES];      /* trace of the strain increment */
     mpm_real shear[MPM__PTW_LANES];       /* mu */
     mpm_real mises2[MPM__PTW_LANES];      /* square of the trial von Mises stress */
-    mpm_real increment[MPM__PTW_LANES];   /* plastic strain increment */
+    mpm_real increment[MPM__PTW_LANES];   /* plastic strain increment, 0 where elastic */
     mpm_real dissipated[MPM__PTW_LANES];  /* plastic work per volume of the increment */
     mpm_real temperature[MPM__PTW_LANES]; /* of level k+1 */
+    mpm_real flow[MPM__PTW_LANES];        /* flow stress that a point was returned to */
     mpm_real staged[MPM__PTW_LANES];      /* flow stress that a staged return leaves to the next step */
-    int yielding[MPM__PTW_LANES], yield_count;  /* points that were returned */
+    int suspects;                         /* points that might yield; the increments of all others are 0 */
 } mpm__ptw_lanes;
 
 /* Names the first value of point i that is not a finite number. */
@@ -1545,20 +1736,22 @@ static inline void mpm__ptw_count(const mpm_block *b, int what, int n)
     if (b->tally) b->tally[what] += n;
 }
 
-/* The shear modulus of every point; returns how many were bounded. Neighbours often share a temperature to the
-   last bit. */
+/* The shear modulus of every point; returns how many were bounded. Where heat has not come yet, all have one
+   temperature to the last bit. */
 static inline int mpm__ptw_shear_lanes(const mpm_material *m, const mpm_block *b, mpm__ptw_lanes *a)
 {
-    mpm_real least = mpm__ptw_shear_floor(m), last = -1, mu = 0;
-    int i, hits = 0;
-    for (i = 0; i < a->count; i++) {
-        mpm_real T = b->temperature[a->first + i];
-        if (T != last || m->shear == MPM_SHEAR_SCG)
-            mu = mpm__ptw_shear_raw(m, T, -a->mean[i], b->density[a->first + i] / m->density);
-        last = T;
-        hits += mu < least;
-        a->shear[i] = mpm__ptw_max(mu, least);
-    }
+    const mpm_real least = mpm__ptw_shear_floor(m), *T = b->temperature + a->first, *rho = b->density + a->first;
+    int i, hits = 0, uniform = m->shear != MPM_SHEAR_SCG;
+    for (i = 1; i < a->count && m->shear == MPM_SHEAR_MTS; i++) uniform &= !(T[i] < T[0] || T[i] > T[0]);
+    if (uniform) a->shear[0] = mpm__ptw_shear_raw(m, T[0], 0, 1);
+    if (uniform)
+        for (i = 1; i < a->count; i++) a->shear[i] = a->shear[0];
+    else if (m->shear == MPM_SHEAR_MTS)
+        for (i = 0; i < a->count; i++) a->shear[i] = mpm__ptw_shear_mts(m, T[i]);
+    else
+        for (i = 0; i < a->count; i++) a->shear[i] = mpm__ptw_shear_scg(m, T[i], -a->mean[i], rho[i] / m->density);
+    for (i = 0; i < a->count; i++) hits += a->shear[i] < least;
+    for (i = 0; i < a->count; i++) a->shear[i] = mpm__ptw_max(a->shear[i], least);
     mpm__ptw_count(b, MPM_TALLY_SHEAR_FLOOR, hits);
     return hits;
 }
@@ -1645,37 +1838,43 @@ static inline void mpm__ptw_try(mpm__ptw_lanes *a)
     }
 }
 
-/* The line between the knots at a strain >= 0. */
-static inline mpm_real mpm__ptw_chord(const mpm__ptw_bounds *bounds, mpm_real strain)
+/* (mu a + b)(1 - soften (T - from)) of the bounds, a and b on the lines between the knots: what each interval adds. */
+static inline void mpm__ptw_least_stress(const mpm__ptw_bounds *bounds, const mpm_block *b, const mpm__ptw_lanes *a,
+                                         mpm_real *least)
 {
-    const mpm_real *x = mpm__ptw_knots, *y = bounds->shear;
-    int i = 1;
-    if (strain >= x[MPM__PTW_KNOTS - 1]) return y[MPM__PTW_KNOTS - 1];
-    while (strain >= x[i]) i++;
-    return y[i - 1] + (y[i] - y[i - 1]) * ((strain - x[i - 1]) / (x[i] - x[i - 1]));
+    const mpm_real *x = mpm__ptw_knots, *y = bounds->shear, *z = bounds->stress;
+    int i, j;
+    for (i = 0; i < a->count; i++) least[i] = y[0] * a->shear[i] + z[0];
+    for (j = 1; j < MPM__PTW_KNOTS; j++) {
+        const mpm_real width = x[j] - x[j - 1], rise = (y[j] - y[j - 1]) / width, lift = (z[j] - z[j - 1]) / width;
+        if (!(rise > 0 || lift > 0)) continue;
+        for (i = 0; i < a->count; i++) {
+            const mpm_real over = mpm__ptw_max(b->plastic_strain[a->first + i] - x[j - 1], 0);
+            least[i] += (rise * a->shear[i] + lift) * mpm__ptw_min(over, width);
+        }
+    }
+    for (i = 0; i < a->count && bounds->soften > 0; i++) {
+        const mpm_real hot = mpm__ptw_max(b->temperature[a->first + i] - bounds->from, 0);
+        least[i] = mpm__ptw_max(least[i] * (1 - bounds->soften * hot), 0);
+    }
 }
 
-/* One search for a return: what is sought and what is known of it. */
-typedef struct mpm__ptw_search {
-    mpm__ptw_point point;
-    mpm_real mises;      /* trial von Mises stress */
-    mpm_real strain;     /* plastic strain at level k */
-    mpm_real d;          /* the increment: next to be tried, then the answer */
-    mpm_real least;      /* the smallest increment that counts */
-    mpm_real low, high;  /* bracket of d */
-    mpm_real step;       /* the last change of d; more than high before the first */
-    mpm_real slope;      /* d flow stress / d d at the last d */
-    int yields;          /* whether the flow stress at least is known to be exceeded */
-    int lane;            /* whose search it is */
-} mpm__ptw_search;
-
-/* The flow law at plastic strain eps + d and rate d/dt. */
-static inline mpm_flow mpm__ptw_flow_at(const mpm_material *m, const mpm__ptw_shared *h,
-                                        mpm__ptw_search *q, mpm_real d, mpm_real per_step)
+/* Lists the lanes that may yield, skipping solid ones below any flow stress. */
+static inline int mpm__ptw_suspects(const mpm_material *m, const mpm__ptw_shared *h,
+                                    const mpm__ptw_bounds *bounds, const mpm_block *b,
+                                    const mpm__ptw_lanes *a, int *list)
 {
-    q->point.state.plastic_strain = q->strain + d;
-    q->point.state.plastic_rate = d * per_step;
-    return mpm__ptw_flow(m, h, &q->point);
+    mpm_real rho_low = h->eta_low * m->density, rho_high = h->eta_high * m->density, least[MPM__PTW_LANES];
+    int i, n = 0;
+    mpm__ptw_least_stress(bounds, b, a, least);
+    for (i = 0; i < a->count; i++) {
+        mpm_real T = b->temperature[a->first + i], rho = b->density[a->first + i];
+        int spared = (a->mises2[i] <= least[i] * least[i]) & (T > 0) & (T < h->cold) & (rho >= rho_low) &
+                     (rho <= rho_high);
+        list[n] = i;
+        n += !spared;
+    }
+    return n;
 }
 
 #ifdef MPM_FLOAT
@@ -1683,6 +1882,26 @@ static inline mpm_flow mpm__ptw_flow_at(const mpm_material *m, const mpm__ptw_sh
 #else
 #define MPM__PTW_TOLERANCE 1e-10
 #endif
+
+/* Gathers the listed lanes of the block in a group, with all that the laws ask for. */
+static inline void mpm__ptw_gather(const mpm_material *m, const mpm__ptw_shared *h, const mpm_block *b,
+                                   const mpm__ptw_lanes *a, const int *list, int n, mpm__ptw_group *g)
+{
+    int i;
+    g->count = n;
+    for (i = 0; i < n; i++) {
+        const int lane = list[i], k = a->first + lane;
+        g->lane[i] = lane;
+        g->strain[i] = g->plastic_strain[i] = b->plastic_strain[k];
+        g->plastic_rate[i] = b->plastic_rate[k];
+        g->temperature[i] = b->temperature[k];
+        g->density[i] = b->density[k];
+        g->pressure[i] = -a->mean[lane];
+        g->shear[i] = a->shear[lane];
+        g->mises[i] = mpm_sqrt(a->mises2[lane]);
+    }
+    mpm__ptw_prepare(m, h, g);
+}
 
 /* The consistent return: the increment d that solves
        mises - 3 mu d = sigma_y(eps + d, d/dt, T),
@@ -1697,109 +1916,155 @@ static inline mpm_flow mpm__ptw_flow_at(const mpm_material *m, const mpm__ptw_sh
    derivative of S ln d (Halley). Of a relative step x it leaves the order of (S + H d) x^2, H the
    hardening slope: once that is within tolerance, the law is not evaluated again. (Where a branch
    of A 2.7 ends within that last step, the flow law is met to about 1e-6 instead.) A caller's law
-   is always evaluated at its root, for its slopes are not trusted. */
-static inline void mpm__ptw_search_begin(mpm__ptw_search *q, mpm_real mises, mpm_real dt, int lane)
+   is always evaluated at its root, for its slopes are not trusted.
+   The points of a group are searched side by side, one evaluation of the law for all in a round. */
+static inline void mpm__ptw_search_begin(mpm__ptw_group *g, mpm_real dt)
 {
-    q->mises = mises;
-    q->strain = q->point.state.plastic_strain;
-    q->d = q->point.state.plastic_rate * dt;
-    q->high = mises / (3 * q->point.shear);
-    q->low = q->least = MPM_EPSILON * q->high;
-    q->step = mpm__ptw_infinity();
-    q->slope = 0;
-    q->yields = 0;
-    q->lane = lane;
-}
-
-/* A better start than the rate of the last step: the old von Mises stress of lane i is the flow
-   stress of that step, so with a guess S of d stress/d ln rate the new increment follows from one
-   linear equation. PTW: S = s1 stress, exact where s0 r^s1 rules; other laws: S = 0. */
-static inline void mpm__ptw_search_guess(const mpm_material *m, const mpm__ptw_lanes *a,
-                                         mpm__ptw_search *q)
-{
-    int i = q->lane;
-    mpm_real n2 = a->rotated[0][i] * a->rotated[0][i] + a->rotated[1][i] * a->rotated[1][i] +
-                  a->rotated[2][i] * a->rotated[2][i];
-    mpm_real t2 = a->rotated[3][i] * a->rotated[3][i] + a->rotated[4][i] * a->rotated[4][i] +
-                  a->rotated[5][i] * a->rotated[5][i];
-    mpm_real old = mpm_sqrt(MPM_R(1.5) * n2 + 3 * t2);
-    mpm_real S = m->strength == MPM_STRENGTH_PTW ? m->ptw.s1 * old : 0;
-    mpm_real d = q->d * (q->mises - old + S) / (3 * q->point.shear * q->d + S);
-    if (d > q->least && d < q->high) q->d = d;
-}
-
-/* Whether the point yields at all; if so, a first guess of the increment unless there is one. */
-static inline int mpm__ptw_search_yields(const mpm_material *m, const mpm__ptw_shared *h,
-                                         mpm__ptw_search *q, mpm_real per_step)
-{
-    mpm_real stiff = 3 * q->point.shear, least = q->least, over;
-    mpm_flow f = mpm__ptw_flow_at(m, h, q, least, per_step);
-    over = q->mises - stiff * least - f.stress;
-    q->yields = over > 0;
-    q->d = over <= 0 ? 0 : q->step > q->high ? over / (stiff + f.strain_slope) : q->high;
-    if (over != over) q->d = over;
-    return q->yields;
-}
-
-/* Whether the relative step x leaves a residual within `close`, so that no further evaluation is
-   needed: by the curvature S + H d of the law, and by what the slope changed in the step before. */
-static inline int mpm__ptw_is_last(const mpm__ptw_search *q, const mpm_flow *f, mpm_real slope,
-                                   mpm_real x, mpm_real close)
-{
-    int first = q->step > q->high;
-    mpm_real left = (f->rate_slope + f->strain_slope * q->d) * x * x;
-    mpm_real seen = mpm_fabs(slope - q->slope) * (x * q->d) * (x * q->d);
-    return mpm_fabs(x) <= (first ? MPM_R(5e-6) : MPM_R(1e-4)) && left <= close &&
-           (first || seen <= close * q->step);
-}
-
-/* Moves a search on by f, the law at its increment d: x is the relative step. Returns whether it is over. */
-static inline int mpm__ptw_search_step(const mpm_material *m, mpm__ptw_search *q, const mpm_flow *f)
-{
-    mpm_real stiff = 3 * q->point.shear, close = MPM__PTW_TOLERANCE * q->mises, d = q->d;
-    mpm_real residual = q->mises - stiff * d - f->stress;
-    mpm_real inverse = 1 / ((stiff + f->strain_slope) * d + f->rate_slope);
-    mpm_real slope = f->strain_slope + f->rate_slope / d, x = residual * inverse;
-    int over = mpm_fabs(residual) <= close;
-    if (residual > 0) {
-        q->yields = 1;
-        q->low = d;
-    } else {
-        q->high = d;
+    int i;
+    for (i = 0; i < g->count; i++) {
+        g->d[i] = g->plastic_rate[i] * dt;
+        g->high[i] = g->mises[i] / (3 * g->shear[i]);
+        g->low[i] = g->least[i] = MPM_EPSILON * g->high[i];
+        g->step[i] = mpm__ptw_infinity();
+        g->slope[i] = g->yields[i] = 0;
     }
-    x /= mpm__ptw_max(1 - x * f->rate_slope * inverse / 2, MPM_R(0.25));
-    if (m->strength == MPM_STRENGTH_USER) x = over ? 0 : x;
-    else over = over || mpm__ptw_is_last(q, f, slope, x, close);
-    over = over || q->high - q->low <= q->least;
-    q->slope = slope;
-    q->d = d + x * d;
-    if (over)
-        q->d = mpm__ptw_min(mpm__ptw_max(q->d, q->low), q->high);
-    else if (2 * mpm_fabs(x * d) > q->step)
-        q->d = q->low + (q->high - q->low) / 2;
-    q->step = mpm_fabs(q->d - d);
-    /* So small an increment that its residual proves nothing: is there any flow? */
-    if (over && !q->yields && !(stiff * d > close)) {
-        q->d = 0;
-        return 0;
-    }
-    return over || residual != residual;
 }
 
-/* One round of the search. Returns whether it is over; then q->d is the answer, or NaN if the law
-   gave NaN. */
-static inline int mpm__ptw_search_on(const mpm_material *m, const mpm__ptw_shared *h,
-                                     mpm__ptw_search *q, mpm_real per_step)
+/* A better start than the rate of the last step: the old von Mises stress is the flow stress of that step, so with a
+   guess S of d stress/d ln rate the new increment follows from one linear equation. PTW: S = s1 stress, exact where
+   s0 r^s1 rules; other laws: S = 0. */
+static inline void mpm__ptw_search_guess(const mpm_material *m, const mpm__ptw_lanes *a, mpm__ptw_group *g)
 {
-    mpm_flow f;
-    if (q->point.state.temperature >= q->point.melt) {
-        q->d = q->high; /* no strength: all of the deviator goes */
-        return 1;
+    const mpm_real s1 = m->strength == MPM_STRENGTH_PTW ? m->ptw.s1 : 0;
+    mpm_real old[MPM__PTW_LANES];
+    int i;
+    for (i = 0; i < a->count; i++)
+        old[i] = mpm_sqrt(MPM_R(1.5) * (a->rotated[0][i] * a->rotated[0][i] + a->rotated[1][i] * a->rotated[1][i] +
+                                        a->rotated[2][i] * a->rotated[2][i]) +
+                          3 * (a->rotated[3][i] * a->rotated[3][i] + a->rotated[4][i] * a->rotated[4][i] +
+                               a->rotated[5][i] * a->rotated[5][i]));
+    for (i = 0; i < g->count; i++) {
+        const mpm_real was = old[g->lane[i]], S = s1 * was;
+        const mpm_real d = g->d[i] * (g->mises[i] - was + S) / (3 * g->shear[i] * g->d[i] + S);
+        if (g->d[i] > g->least[i] && d > g->least[i] && d < g->high[i]) g->d[i] = d;
     }
-    if (!q->yields && !(q->d > q->least) && !mpm__ptw_search_yields(m, h, q, per_step)) return 1;
-    if (!(q->d > q->low && q->d <= q->high)) q->d = q->low + (q->high - q->low) / 2;
-    f = mpm__ptw_flow_at(m, h, q, q->d, per_step);
-    return mpm__ptw_search_step(m, q, &f);
+}
+
+/* The state in which the law is asked next: at the least increment where nothing is known yet, else at d, which is kept
+   within its bracket. */
+static inline void mpm__ptw_search_try(mpm__ptw_group *g, mpm_real per_step)
+{
+    int i;
+    for (i = 0; i < g->count; i++) {
+        const mpm_real d = g->d[i], low = g->low[i], high = g->high[i], middle = low + (high - low) / 2;
+        const mpm_real inside = d > low && d <= high ? d : middle;
+        const mpm_real at = g->yields[i] > 0 || d > g->least[i] ? inside : g->least[i];
+        g->plastic_strain[i] = g->strain[i] + at;
+        g->plastic_rate[i] = at * per_step;
+        g->d[i] = at;
+    }
+}
+
+/* Moves the searches on by the law's answers at d. over[i]: 1 where d is the answer, or NaN if the law gave NaN. */
+static inline void mpm__ptw_search_step(const mpm_material *m, mpm__ptw_group *g, mpm_real *over)
+{
+    const int user = m->strength == MPM_STRENGTH_USER;
+    int i;
+    for (i = 0; i < g->count; i++) {
+        const mpm_real d = g->d[i], stiff = 3 * g->shear[i], close = MPM__PTW_TOLERANCE * g->mises[i];
+        const mpm_real E = g->strain_slope[i], S = g->rate_slope[i], residual = g->mises[i] - stiff * d - g->stress[i];
+        const mpm_real first = g->step[i] > g->high[i] ? MPM_R(1.0) : MPM_R(0.0);
+        /* where only the least increment was tried: does it yield at all? */
+        const mpm_real asked = g->yields[i] > 0 || d > g->least[i] ? MPM_R(0.0) : MPM_R(1.0);
+        const mpm_real start = first > 0 ? residual / (stiff + E) : g->high[i];
+        /* else Newton's step x d, corrected */
+        const mpm_real inverse = 1 / ((stiff + E) * d + S), slope = E + S / d, x_newton = residual * inverse;
+        const mpm_real low = residual > 0 ? d : g->low[i], high = residual > 0 ? g->high[i] : d;
+        const mpm_real x_halley = x_newton / mpm__ptw_max(1 - x_newton * S * inverse / 2, MPM_R(0.25));
+        const mpm_real met = mpm_fabs(residual) <= close ? MPM_R(1.0) : MPM_R(0.0);
+        const mpm_real x = user && met > 0 ? 0 : x_halley, xd = x * d;
+        /* the last step: by the curvature S + E d of the law, and by what the slope changed in the step before */
+        const mpm_real left = (S + E * d) * x * x, seen = mpm_fabs(slope - g->slope[i]) * xd * xd;
+        const mpm_real short_one = mpm_fabs(x) <= (first > 0 ? MPM_R(5e-6) : MPM_R(1e-4)) ? MPM_R(1.0) : MPM_R(0.0);
+        const mpm_real known = first > 0 || seen <= close * g->step[i] ? MPM_R(1.0) : MPM_R(0.0);
+        const mpm_real last = left <= close && !user ? short_one * known : MPM_R(0.0);
+        const mpm_real narrow = high - low <= g->least[i] ? MPM_R(1.0) : MPM_R(0.0), done = met + last + narrow;
+        const mpm_real next = d + xd, kept = mpm__ptw_min(mpm__ptw_max(next, low), high);
+        const mpm_real halved = 2 * mpm_fabs(xd) > g->step[i] ? low + (high - low) / 2 : next;
+        const mpm_real moved = done > 0 ? kept : halved, yields = residual > 0 ? MPM_R(1.0) : g->yields[i];
+        /* so small an increment that its residual proves nothing: asks whether there is any flow */
+        const mpm_real doubt = done > 0 && !(yields > 0) && !(stiff * d > close) ? MPM_R(1.0) : MPM_R(0.0);
+        const mpm_real wrong = residual != residual ? MPM_R(1.0) : MPM_R(0.0);
+        const mpm_real none = residual <= 0 ? MPM_R(0.0) : residual; /* no flow; or no number */
+        over[i] = asked > 0 ? (residual > 0 ? 0 : 1) : (doubt > 0 ? 0 : done + wrong);
+        g->d[i] = asked > 0 ? (residual > 0 ? start : none) : (doubt > 0 ? 0 : moved);
+        g->low[i] = asked > 0 ? g->low[i] : low;
+        g->high[i] = asked > 0 ? g->high[i] : high;
+        g->slope[i] = asked > 0 ? g->slope[i] : slope;
+        g->step[i] = asked > 0 ? g->step[i] : mpm_fabs(moved - d);
+        g->yields[i] = yields;
+    }
+}
+
+/* Takes the answers of the searches that are over to *a; the others close up. */
+static inline void mpm__ptw_search_close(mpm__ptw_group *g, const mpm_real *over, mpm__ptw_lanes *a)
+{
+    int keep[MPM__PTW_LANES], i, n = 0;
+    for (i = 0; i < g->count; i++) {
+        keep[n] = i;
+        n += !(over[i] > 0);
+        a->increment[g->lane[i]] = g->d[i];
+    }
+    if (n == g->count) return;
+    g->count = n;
+    for (i = 0; i < n; i++) g->lane[i] = g->lane[keep[i]];
+#define MPM__PTW_CLOSE_UP(name) \
+    for (i = 0; i < n; i++) g->name[i] = g->name[keep[i]];
+    MPM__PTW_LANE_LIST(MPM__PTW_CLOSE_UP)
+#undef MPM__PTW_CLOSE_UP
+}
+
+/* Molten points have no strength: all of the deviator goes, without a search. */
+static inline void mpm__ptw_search_molten(mpm__ptw_group *g, mpm__ptw_lanes *a)
+{
+    mpm_real over[MPM__PTW_LANES];
+    int i, molten = 0;
+    for (i = 0; i < g->count; i++) {
+        over[i] = g->temperature[i] >= g->melt[i] ? MPM_R(1.0) : MPM_R(0.0);
+        molten += over[i] > 0;
+    }
+    if (!molten) return;
+    for (i = 0; i < g->count; i++) g->d[i] = over[i] > 0 ? g->high[i] : g->d[i];
+    mpm__ptw_search_close(g, over, a);
+}
+
+/* The increments of a group, to *a. Returns how many were still open at the cap. */
+static inline int mpm__ptw_search(const mpm_material *m, const mpm__ptw_shared *h, const mpm_block *b,
+                                  mpm__ptw_group *g, mpm__ptw_lanes *a)
+{
+    const mpm_real per_step = 1 / b->dt;
+    mpm_real over[MPM__PTW_LANES];
+    int tries;
+    mpm__ptw_search_begin(g, b->dt);
+    mpm__ptw_search_guess(m, a, g);
+    mpm__ptw_search_molten(g, a);
+    for (tries = 0; tries < MPM__PTW_ITERATIONS && g->count > 0; tries++) {
+        mpm__ptw_search_try(g, per_step);
+        h->law->flow(m, g);
+        mpm__ptw_search_step(m, g, over);
+        mpm__ptw_search_close(g, over, a);
+    }
+    return g->count;
+}
+
+/* The stress to which consistent returns have come: sigma* - 3 mu d, and none where that is lost in rounding. */
+static inline void mpm__ptw_returned(mpm__ptw_lanes *a)
+{
+    int i;
+    for (i = 0; i < a->count; i++) {
+        const mpm_real mises = mpm_sqrt(a->mises2[i]), flow = mises - 3 * a->shear[i] * a->increment[i];
+        a->flow[i] = flow <= 4 * MPM_EPSILON * mises ? 0 : flow;
+    }
 }
 
 /* sqrt(2/3 e:e): the effective size of lane i's deviatoric strain increment. */
@@ -1814,43 +2079,31 @@ static inline mpm_real mpm__ptw_effective(const mpm__ptw_lanes *a, int i)
     return mpm_sqrt((n2 + 2 * t2) * 2 / 3);
 }
 
-/* The staged return of one lane: d = (sigma* - sigma_y)/(3 mu + E_p) (A6) with the flow stress sigma_y that the last
+/* The staged return of a group: d = (sigma* - sigma_y)/(3 mu + E_p) (A6) with the flow stress sigma_y that the last
    return left, then the flow stress at the strain and rate it gives (A7), s = min(sigma_y/sigma*, 1) s* (A8). Before
-   its first return a point has none: the flow stress at the rate `total` of the whole deviatoric strain stands for it.
-   Sets q->d and a->staged; returns the stress returned to. */
-static inline mpm_real mpm__ptw_stage(const mpm_material *m, const mpm__ptw_shared *h, const mpm_block *b,
-                                      mpm__ptw_lanes *a, mpm__ptw_search *q)
+   its first return a point has none: the flow stress at the rate of the whole deviatoric strain stands for it. Sets
+   increment, flow and staged of *a. */
+static inline void mpm__ptw_stage(const mpm_material *m, const mpm__ptw_shared *h, const mpm_block *b,
+                                  mpm__ptw_group *g, mpm__ptw_lanes *a)
 {
-    mpm_real per_step = 1 / b->dt, left = b->user[m->flow_field][a->first + q->lane];
-    mpm_flow f;
-    if (!(q->point.state.plastic_rate > 0))
-        q->point.state.plastic_rate = mpm__ptw_effective(a, q->lane) * per_step;
-    f = mpm__ptw_flow(m, h, &q->point);
-    if (left > 0 && f.stress > 0) f.stress = left;
-    q->d = 0;
-    if (q->mises <= f.stress) return q->mises;
-    q->d = (q->mises - f.stress) / (3 * q->point.shear + f.strain_slope);
-    a->staged[q->lane] = mpm__ptw_flow_at(m, h, q, q->d, per_step).stress;
-    return mpm__ptw_min(a->staged[q->lane], q->mises);
-}
-
-/* Lists the lanes that may yield, skipping solid ones below any flow stress. */
-static inline int mpm__ptw_suspects(const mpm_material *m, const mpm__ptw_shared *h,
-                                    const mpm__ptw_bounds *bounds, const mpm_block *b,
-                                    const mpm__ptw_lanes *a, int *list)
-{
-    mpm_real rho_low = h->eta_low * m->density, rho_high = h->eta_high * m->density;
-    int i, n = 0;
-    for (i = 0; i < a->count; i++) {
-        int k = a->first + i;
-        mpm_real bound = mpm__ptw_chord(bounds, b->plastic_strain[k]) * a->shear[i] + bounds->stress;
-        mpm_real T = b->temperature[k], rho = b->density[k];
-        int spared = a->mises2[i] <= bound * bound && T > 0 && T < h->cold && rho >= rho_low &&
-                     rho <= rho_high;
-        list[n] = i;
-        n += !spared;
+    const mpm_real per_step = 1 / b->dt, *left = b->user[m->flow_field] + a->first;
+    int i;
+    for (i = 0; i < g->count; i++)
+        if (!(g->plastic_rate[i] > 0)) g->plastic_rate[i] = mpm__ptw_effective(a, g->lane[i]) * per_step;
+    mpm__ptw_flow(m, h, g);
+    for (i = 0; i < g->count; i++) {
+        const mpm_real yield = left[g->lane[i]] > 0 && g->stress[i] > 0 ? left[g->lane[i]] : g->stress[i];
+        const mpm_real over = g->mises[i] - yield, d = over / (3 * g->shear[i] + g->strain_slope[i]);
+        g->d[i] = over <= 0 ? 0 : d;
+        g->plastic_strain[i] = g->strain[i] + g->d[i];
+        g->plastic_rate[i] = g->d[i] * per_step;
     }
-    return n;
+    mpm__ptw_flow(m, h, g);
+    for (i = 0; i < g->count; i++) {
+        a->increment[g->lane[i]] = g->d[i];
+        a->staged[g->lane[i]] = g->stress[i];
+        a->flow[g->lane[i]] = mpm__ptw_min(g->stress[i], g->mises[i]);
+    }
 }
 
 /* Plastic work per volume of lane i whose deviator comes back to factor s*: what the strain puts in less what stays
@@ -1866,58 +2119,49 @@ static inline mpm_real mpm__ptw_staged_work(const mpm__ptw_lanes *a, int i, mpm_
     return (1 - factor) * (normal + 2 * shear) / (4 * a->shear[i]);
 }
 
-/* Takes the answer of a search: increment, flow stress and the scaled deviator s = sigma_y/sigma* s* (A8) go to *a. */
-static inline void mpm__ptw_take(const mpm_material *m, const mpm_block *b, mpm__ptw_lanes *a,
-                                 const mpm__ptw_search *q, mpm_real flow, mpm_real per_step)
+/* The scaled deviator s = sigma_y/sigma* s* (A8) of the points that yield, and their plastic work. */
+static inline void mpm__ptw_scale(const mpm_material *m, mpm__ptw_lanes *a)
 {
-    int j, i = q->lane;
-    mpm_real factor;
-    if (!(q->d > 0)) return;
-    factor = flow / q->mises;
-    a->increment[i] = q->d;
-    a->dissipated[i] = m->mapping == MPM_RETURN_STAGED ? mpm__ptw_staged_work(a, i, factor) : flow * q->d;
-    for (j = 0; j < 6; j++) a->trial[j][i] *= factor;
-    a->yielding[a->yield_count++] = i;
-    if (m->strength == MPM_STRENGTH_PTW && !m->erf_literal &&
-        mpm__ptw_overdriven(&q->point, q->d * per_step))
-        mpm__ptw_count(b, MPM_TALLY_ERF_CLIP, 1);
-}
-
-/* Runs the searches of one group side by side, so that the processor can overlap them: each round
-   tries every open one once. Returns how many were still open at the cap. */
-static inline int mpm__ptw_search_all(const mpm_material *m, const mpm__ptw_shared *h,
-                                      mpm__ptw_search *q, int n, mpm_real per_step)
-{
-    int open[MPM__PTW_LANES], i, left, tries;
-    for (i = 0; i < n; i++) open[i] = i;
-    for (tries = 0; tries < MPM__PTW_ITERATIONS && n > 0; tries++) {
-        for (i = left = 0; i < n; i++) {
-            open[left] = open[i];
-            left += !mpm__ptw_search_on(m, h, &q[open[i]], per_step);
-        }
-        n = left;
+    mpm_real factor[MPM__PTW_LANES];
+    int i, j;
+    for (i = 0; i < a->count; i++) {
+        const mpm_real mises = mpm_sqrt(a->mises2[i]), f = a->flow[i] / mises;
+        factor[i] = a->increment[i] > 0 ? f : 1;
+        a->dissipated[i] = a->increment[i] > 0 ? a->flow[i] * a->increment[i] : 0;
     }
-    return n;
+    for (i = 0; i < a->count && m->mapping == MPM_RETURN_STAGED; i++)
+        if (a->increment[i] > 0) a->dissipated[i] = mpm__ptw_staged_work(a, i, factor[i]);
+    for (j = 0; j < 6; j++)
+        for (i = 0; i < a->count; i++) a->trial[j][i] *= factor[i];
 }
 
-/* The state of lane i, as the laws see it. */
-static inline mpm_material_state mpm__ptw_state(const mpm_block *b, const mpm__ptw_lanes *a, int i)
+/* Whether increments and flow stresses are finite; else the fault. */
+static inline mpm_status mpm__ptw_found(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a,
+                                        const int *list, int n)
 {
-    int k = a->first + i;
-    mpm_material_state s;
-    s.plastic_strain = b->plastic_strain[k];
-    s.plastic_rate = b->plastic_rate[k];
-    s.temperature = b->temperature[k];
-    s.density = b->density[k];
-    s.pressure = -a->mean[i];
-    return s;
+    int i;
+    for (i = 0; i < n; i++) {
+        const int lane = list[i];
+        const mpm_real d = a->increment[lane], flow = a->flow[lane];
+        if (mpm_finite(d * flow * a->mises2[lane])) continue;
+        if (!mpm_finite(mpm_sqrt(a->mises2[lane]))) return mpm__ptw_blame(m, b, a->first + lane);
+        if (!mpm_finite(d) || !mpm_finite(flow))
+            return mpm_fail(b->fault, MPM_ERR_NAN, "flow stress of point", d, a->first + lane);
+    }
+    return MPM_OK;
 }
 
-/* The stress to which a consistent return has come: sigma* - 3 mu d, or none where molten. */
-static inline mpm_real mpm__ptw_returned(const mpm__ptw_search *q)
+/* Counts the yielding points beyond r = 1. */
+static inline void mpm__ptw_count_overdriven(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a,
+                                             const mpm__ptw_shared *h)
 {
-    if (!(q->point.state.temperature < q->point.melt)) return 0;
-    return mpm__ptw_max(q->mises - 3 * q->point.shear * q->d, 0);
+    int i, n = 0;
+    if (m->strength != MPM_STRENGTH_PTW || m->erf_literal) return;
+    for (i = 0; i < a->count; i++) { /* r^2 = (rate/(rate_factor sqrt mu))^2 eta^(1/3): cubed, no root is left */
+        const mpm_real r = a->increment[i] / (b->dt * h->rate_factor), square = r * r / a->shear[i];
+        n += square * square * square * (b->density[a->first + i] / m->density) > 1;
+    }
+    mpm__ptw_count(b, MPM_TALLY_ERF_CLIP, n);
 }
 
 /* Sorts out the points that may yield and returns them to the flow stress. Touches only *a (and
@@ -1926,26 +2170,22 @@ static inline mpm_status mpm__ptw_yield(const mpm_material *m, const mpm__ptw_sh
                                         const mpm__ptw_bounds *bounds, const mpm_block *b,
                                         mpm__ptw_lanes *a)
 {
-    mpm__ptw_search search[MPM__PTW_LANES], *q;
-    mpm_real per_step = 1 / b->dt;
-    int list[MPM__PTW_LANES + 1], i, n, capped = 0, staged = m->mapping == MPM_RETURN_STAGED;
-    a->yield_count = 0;
-    if (m->strength == MPM_STRENGTH_ELASTIC) return MPM_OK;
-    n = mpm__ptw_suspects(m, h, bounds, b, a, list);
-    for (i = 0, q = search; i < n; i++, q++) {
-        mpm_material_state s = mpm__ptw_state(b, a, list[i]);
-        q->point = mpm__ptw_prepare(m, h, &s, a->shear[list[i]]);
-        mpm__ptw_search_begin(q, mpm_sqrt(a->mises2[list[i]]), b->dt, list[i]);
-        if (q->d > q->least) mpm__ptw_search_guess(m, a, q);
+    mpm__ptw_group g;
+    int list[MPM__PTW_LANES + 1], i, n, capped = 0;
+    for (i = 0; i < a->count; i++) a->increment[i] = a->flow[i] = a->dissipated[i] = 0;
+    n = m->strength == MPM_STRENGTH_ELASTIC ? 0 : mpm__ptw_suspects(m, h, bounds, b, a, list);
+    a->suspects = n;
+    if (n == 0) return MPM_OK;
+    mpm__ptw_gather(m, h, b, a, list, n, &g);
+    if (m->mapping == MPM_RETURN_STAGED) {
+        mpm__ptw_stage(m, h, b, &g, a);
+    } else {
+        capped = mpm__ptw_search(m, h, b, &g, a);
+        mpm__ptw_returned(a);
     }
-    if (!staged) capped = mpm__ptw_search_all(m, h, search, n, per_step);
-    for (i = 0, q = search; i < n; i++, q++) {
-        mpm_real flow = staged ? mpm__ptw_stage(m, h, b, a, q) : mpm__ptw_returned(q);
-        if (!mpm_finite(q->mises)) return mpm__ptw_blame(m, b, a->first + q->lane);
-        if (!mpm_finite(q->d) || !mpm_finite(flow))
-            return mpm_fail(b->fault, MPM_ERR_NAN, "flow stress of point", q->d, a->first + q->lane);
-        mpm__ptw_take(m, b, a, q, flow, per_step);
-    }
+    MPM__PTW_REQUIRE(mpm__ptw_found(m, b, a, list, n));
+    mpm__ptw_scale(m, a);
+    mpm__ptw_count_overdriven(m, b, a, h);
     mpm__ptw_count(b, MPM_TALLY_ITERATION, capped);
     return capped ? MPM_NOT_CONVERGED : MPM_OK;
 }
@@ -1953,16 +2193,14 @@ static inline mpm_status mpm__ptw_yield(const mpm_material *m, const mpm__ptw_sh
 /* Plastic strain, its rate and plastic work dW = sigma d (A 4.15), to the block. */
 static inline void mpm__ptw_commit(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a)
 {
-    mpm_real per_step = 1 / b->dt;
-    int i, y;
-    for (i = 0; i < a->count; i++) b->plastic_rate[a->first + i] = 0;
-    for (y = 0; y < a->yield_count; y++) {
-        int lane = a->yielding[y], k = a->first + lane;
-        b->plastic_rate[k] = a->increment[lane] * per_step;
-        b->plastic_strain[k] += a->increment[lane];
-        b->plastic_work[k] += a->dissipated[lane];
-        if (m->mapping == MPM_RETURN_STAGED) b->user[m->flow_field][k] = a->staged[lane];
-    }
+    const mpm_real per_step = 1 / b->dt;
+    int i, k = a->first;
+    for (i = 0; i < a->count; i++) b->plastic_rate[k + i] = a->increment[i] * per_step;
+    if (a->suspects == 0) return;
+    for (i = 0; i < a->count; i++) b->plastic_strain[k + i] += a->increment[i];
+    for (i = 0; i < a->count; i++) b->plastic_work[k + i] += a->dissipated[i];
+    for (i = 0; i < a->count && m->mapping == MPM_RETURN_STAGED; i++)
+        if (a->increment[i] > 0) b->user[m->flow_field][k + i] = a->staged[i];
 }
 
 /* (s of level k + s of level k+1) : dEps', twice the deviator's work per volume. */
@@ -2070,7 +2308,7 @@ static inline void mpm__ptw_heat_volume(const mpm_material *m, const mpm_block *
     int i, k = a->first;
     for (i = 0; i < a->count; i++) {
         mpm_real dv = m->density / b->density[k + i] * a->volume[i] / (1 + a->volume[i]);
-        a->temperature[i] += a->temperature[i] * mpm_expm1(-a->thermal[i] * dv);
+        a->temperature[i] += a->temperature[i] * mpm_lane_expm1(-a->thermal[i] * dv);
         a->temperature[i] -= a->viscous[i] * dv / (m->density * m->specific_heat);
     }
 }
@@ -2078,13 +2316,11 @@ static inline void mpm__ptw_heat_volume(const mpm_material *m, const mpm_block *
 /* Temperature of level k+1 with the heat of plastic work, dT = chi sigma d/(rho Cp) (A 3.44). Touches only *a. */
 static inline void mpm__ptw_heat(const mpm_material *m, const mpm_block *b, mpm__ptw_lanes *a)
 {
-    int i, y;
-    for (i = 0; i < a->count; i++) a->temperature[i] = b->temperature[a->first + i];
-    for (y = 0; m->heat_fraction > 0 && y < a->yield_count; y++) {
-        mpm_real work = a->dissipated[a->yielding[y]];
-        i = a->yielding[y];
-        a->temperature[i] += m->heat_fraction * work / (b->density[a->first + i] * m->specific_heat);
-    }
+    const mpm_real share = m->heat_fraction / m->specific_heat;
+    int i, k = a->first;
+    for (i = 0; i < a->count; i++) a->temperature[i] = b->temperature[k + i];
+    if (m->heat_fraction > 0 && a->suspects > 0)
+        for (i = 0; i < a->count; i++) a->temperature[i] += share * a->dissipated[i] / b->density[k + i];
     if (m->compression_heating) mpm__ptw_heat_volume(m, b, a);
 }
 
@@ -2092,23 +2328,18 @@ static inline void mpm__ptw_heat(const mpm_material *m, const mpm_block *b, mpm_
 static inline mpm_status mpm__ptw_settled(const mpm_material *m, const mpm_block *b, const mpm__ptw_lanes *a)
 {
     mpm_real per_step = 1 / b->dt, wrong[MPM__PTW_LANES];
-    int i, y, k = a->first, bad = 0;
+    int i, k = a->first, bad = 0;
     for (i = 0; i < a->count; i++) {
         mpm_real t = (a->trial[0][i] + a->mean[i]) * 0 + (a->trial[1][i] + a->mean[i]) * 0 +
                      (a->trial[2][i] + a->mean[i]) * 0;
         t += a->trial[3][i] * 0 + a->trial[4][i] * 0 + a->trial[5][i] * 0 + a->energy[i] * 0 + a->temperature[i] * 0;
+        t += (a->increment[i] * per_step) * 0 + (b->plastic_strain[k + i] + a->increment[i]) * 0 +
+             (b->plastic_work[k + i] + a->dissipated[i]) * 0;
         bad |= !(t == 0);
         wrong[i] = t;
     }
     for (i = 0; bad && i < a->count; i++)
         if (!(wrong[i] == 0)) return mpm__ptw_blame(m, b, k + i);
-    for (y = 0; y < a->yield_count; y++) {
-        mpm_real d = a->increment[a->yielding[y]], work = a->dissipated[a->yielding[y]];
-        i = k + a->yielding[y];
-        if (!mpm_finite(d * per_step) || !mpm_finite(b->plastic_strain[i] + d) ||
-            !mpm_finite(b->plastic_work[i] + work))
-            return mpm__ptw_blame(m, b, i);
-    }
     return MPM_OK;
 }
 

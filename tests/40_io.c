@@ -870,8 +870,15 @@ static void test_checkpoint(void)
     CHECK_EQUAL("another real type", mpm_io_checkpoint_read(damaged, text, in, 3, &f), MPM_ERR_VERSION);
     free(file);
     in[0].room = sizeof a - 1;
+    in[0].bytes = 7;
     CHECK_EQUAL("too little room", mpm_io_checkpoint_read(path, text, in, 3, &f), MPM_ERR_FILE);
     CHECK_TRUE("fault says so", strcmp(f.field, "name or size of blob differs") == 0 && f.index == 0);
+    CHECK_EQUAL("... how much is stored can be asked for", mpm_io_checkpoint_sizes(path, text, in, 3, &f), MPM_OK);
+    CHECK_EQUAL("... it is", (long)in[0].bytes, (long)sizeof a);
+    CHECK_EQUAL("... of a damaged file it cannot", mpm_io_checkpoint_sizes(damaged, text, in, 3, &f), MPM_ERR_VERSION);
+    in[1].bytes = 2;
+    CHECK_EQUAL("... nor where a fixed size differs", mpm_io_checkpoint_sizes(path, text, in, 3, &f), MPM_ERR_FILE);
+    in[1].bytes = sizeof steps_back;
     in[0] = mpm_blob_of("a", back, sizeof back);
     CHECK_EQUAL("another size", mpm_io_checkpoint_read(path, text, in, 3, &f), MPM_ERR_FILE);
     CHECK_EQUAL("no such file", mpm_io_checkpoint_read(FOLDER "/none", text, in, 3, &f), MPM_ERR_FILE);

@@ -4,10 +4,10 @@
 #ifndef PARTICLES_CASE_H
 #define PARTICLES_CASE_H
 
-#include "output.h"
+#include "impact_restart.h"
 #include "study.h"
 
-#define PARTICLES 500
+#define PARTICLES (IMPACT_BODIES - 1) /* the last body is the substrate */
 
 typedef struct particles_case {
     impact_case base;            /* of every particle; its gap is not used */
@@ -482,53 +482,6 @@ static inline int particles_done(const particles_case *q)
 
 #define PARTICLES_CHECKPOINT 60 /* CPU seconds from one to the next */
 
-/* What must be the same for a run that goes on: options, frames, the world. Test: 63_particles. */
-static inline const char *particles_text(const impact *s, const particles_case *q)
-{
-    static char text[1000 * (PARTICLES + 8)];
-    impact_case c = q->base;
-    option o[IMPACT_OPTIONS];
-    size_t used = 0;
-    int n = impact_options(&c, o), k;
-    for (k = 0; k < n; k++) {
-        char number[OPTION_NUMBER];
-        used = mpm_io_line(text, sizeof text, used, o[k].name, option_text(&o[k], number));
-    }
-    used = mpm_io_line_number(text, sizeof text, used, "frames", (double)q->out.frames);
-    used = mpm_io_line_number(text, sizeof text, used, "dt", (double)s->dt);
-    mpm_io_world_text(text + used, sizeof text - used, &s->world);
-    return text;
-}
-
-/* Writes the checkpoint, or reads it (nothing is changed if it is none of this scene): the world, and what is
-   counted beside it. */
-static inline mpm_status particles_checkpoint(impact *s, particles_case *q, int write, const char *path,
-                                              mpm_fault *fault)
-{
-    static mpm_blob blob[MPM_BLOBS(PARTICLES + 1) + 3]; /* the substrate too */
-    const char *text = particles_text(s, q);
-    mpm_status status;
-    int n = mpm_blobs(&s->world, blob);
-    blob[n++] = mpm_blob_of("start", &s->start, sizeof s->start);
-    blob[n++] = mpm_blob_of("frame", &q->out.frame, sizeof q->out.frame);
-    blob[n++] = mpm_blob_of("cpu seconds", &q->out.cpu, sizeof q->out.cpu);
-    if (write) return mpm_io_checkpoint_write(path, text, blob, n, fault);
-    status = mpm_io_checkpoint_read(path, text, blob, n, fault);
-    if (status >= 0 && (status = mpm_restored(&s->world, blob)) < 0) *fault = s->world.fault;
-    return status;
-}
-
-static inline int particles_save(impact *s, particles_case *q)
-{
-    const clock_t mark = clock();
-    char path[PATH_BYTES];
-    mpm_fault fault;
-    const int ok = particles_checkpoint(s, q, 1, file_in(q->out.folder, "checkpoint.bin", path, sizeof path),
-                                        &fault) >= 0;
-    q->out.writing += clock() - mark;
-    return ok || report(&fault, path);
-}
-
 /* Goes on where an earlier run of this scene was left, or begins the output. Returns 1, or 0 after a message. */
 static inline int particles_resume(impact *s, particles_case *q)
 {
@@ -537,12 +490,11 @@ static inline int particles_resume(impact *s, particles_case *q)
     const int found = is_there(file_in(q->out.folder, "checkpoint.bin", path, sizeof path));
     if (found < 0) return 0; /* what it holds must not be lost */
     if (found) {
-        if (particles_checkpoint(s, q, 0, path, &fault) >= 0) {
-            if (!q->out.quiet)
-                printf("going on from step %lld of %lld\n", (long long)s->world.steps, (long long)s->steps);
+        if (impact_checkpoint(s, &q->base, &q->out, 0, path, &fault) >= 0) {
+            impact_resumed(s, &q->out);
             return 1;
         }
-        if (s->world.points.count == 0) return report(&fault, path);
+        if (s->world.points.count == 0 || s->world.steps > 0) return report(&fault, path);
         mpm_io_fault_text(text, sizeof text, &fault);
         fprintf(stderr, "%s is of other options or damaged (%s): starting afresh\n", path, text);
     }
@@ -556,23 +508,19 @@ static inline int particles_resume(impact *s, particles_case *q)
 static inline int particles_run(impact *s, particles_case *q)
 {
     const mpm_world *w = &s->world;
-    double saved = q->out.cpu;
+    impact_stops stops = {PARTICLES_CHECKPOINT, q->stop_after, q->out.cpu};
+    int status = 1;
     output_start(&q->out, w);
     for (;;) {
         if (output_due(&q->out, w, s->steps) && !particles_frame(s, q)) return 0;
         if (w->steps >= s->steps) break;
-        if (q->stop_after > 0 && w->steps - q->out.first >= q->stop_after) break;
-        if (output_cpu(&q->out) - saved >= PARTICLES_CHECKPOINT) {
-            if (!particles_save(s, q)) return 0;
-            saved = q->out.cpu;
-        }
+        if ((status = impact_goes_on(s, &q->base, &q->out, &stops)) <= 0) break;
         if (impact_step(s) < 0) return report(&w->fault, "step");
         output_progress(&q->out, w, s->steps);
     }
     output_progress_end(&q->out);
     output_cpu(&q->out);
-    if (w->steps >= s->steps) return 1;
-    return particles_save(s, q) ? -1 : 0;
+    return status;
 }
 
 /* The rest of main(): runs the scene and writes everything. Returns 0; 1 after a message; 3 when stopped. */
@@ -584,8 +532,7 @@ static inline int particles_main(particles_case *q, const option *o, int n)
     int status;
     if (!particles_begin(&s, q, message, sizeof message)) return !complain(message);
     status = particles_resume(&s, q) ? particles_run(&s, q) : 0;
-    if (status < 0)
-        printf("stopped at step %lld of %lld; run again to go on\n", (long long)s.world.steps, (long long)s.steps);
+    if (status < 0) impact_stopped(&s, "run again");
     if (status > 0) {
         particles_report(&s, q, r);
         status = particles_table(q, r) && particles_pairs(&s, q) && particles_summary(&s, q, r, o, n);

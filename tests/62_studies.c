@@ -182,6 +182,19 @@ static void particles(void)
     CHECK_EQUAL("the same seed", run(command), 0);
     contents(FOLDER "/many/particles.csv", output, sizeof output);
     CHECK_TRUE("... gives the same report", !strcmp(text, output));
+    snprintf(command, sizeof command, "two_particles --method surface %s/rings --geometry axisymmetric --time 16 "
+             "--height 21.2 --adhesion-critical 100", grid);
+    CHECK_EQUAL("two particles on surfaces, one behind the other", run(command), 0);
+    CHECK_TRUE("... the second touched the first, the first the substrate",
+               contents(FOLDER "/rings/pairs.csv", text, sizeof text) && strstr(text, "\n0,1,") &&
+                   strstr(text, "\n0,2,") && !strstr(text, "\n1,2,"));
+    CHECK_NEAR("... energy", number_in(FOLDER "/rings/summary.json", "energy_unaccounted"), 0, 0.01);
+    CHECK_TRUE("... their surfaces in ParaView", contents(FOLDER "/rings/surface_0000.vtu", text, sizeof text) > 1000);
+    CHECK_TRUE("... a share of what touched is bonded", number_in(FOLDER "/rings/summary.json", "pbcp_percent") > 1);
+    snprintf(command, sizeof command, "many_particles --method surface %s/few --count 2 --spread 20 --time 0.4", grid);
+    CHECK_EQUAL("some on surfaces", run(command), 0);
+    CHECK_EQUAL("... counted", number_in(FOLDER "/few/summary.json", "particles"), 2);
+    refused("two_particles --method surface --bond energy", "--bond interface");
     refused("two_particles --height 10", "overlap");
     refused("two_particles --geometry axisymmetric --offset 2", "3d");
     refused("two_particles --offset inf", "inf");

@@ -600,26 +600,6 @@ static void test_csv(void)
 enum { POINTS = 37 };
 static mpm_real field_data[9][POINTS];
 
-/* The appended array of a given name: its bytes and their number, as the tag's offset says. */
-static const unsigned char *vtu_array(const unsigned char *file, size_t n, const char *name,
-                                      const char *type, uint64_t *bytes)
-{
-    char tag[96];
-    const char *text = (const char *)file, *found, *offset;
-    size_t start = 0;
-    while (start + 22 < n && memcmp(text + start, "encoding=\"raw\">\n_", 17) != 0) start++;
-    start += 17;
-    snprintf(tag, sizeof tag, "type=\"%s\" Name=\"%s\"", type, name);
-    found = strstr(text, tag);
-    offset = found ? strstr(found, "offset=\"") : NULL;
-    *bytes = 0;
-    if (!offset) return NULL;
-    start += strtoul(offset + 8, NULL, 10);
-    if (start + 8 > n) return NULL;
-    memcpy(bytes, file + start, 8);
-    return start + 8 + *bytes <= n ? file + start + 8 : NULL;
-}
-
 /* Each point is a cell of its own: cell i holds point i, ends at i + 1, is of VTK's type 1. Returns how many do not. */
 static int cells_differ(const unsigned char *file, size_t n)
 {

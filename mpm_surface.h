@@ -244,9 +244,9 @@ MPM_API mpm_status mpm_surface_contact(mpm_surfaces *s, mpm_world *w);
    Test: 33_surface. */
 MPM_API mpm_status mpm_surface_move(mpm_surfaces *s, mpm_world *w);
 
-/* The step of mpm.h, of dt [time] > 0, with contact on surfaces in place of contact at nodes: see HOW GOOD IT IS for the
-   largest. Errors as mpm_step, mpm_surface_contact and mpm_surface_move, with the fault in the world. Test: 33_surface,
-   37_surface_motion. */
+/* The step of mpm.h, of dt [time] > 0, with contact on surfaces in place of contact at nodes: the
+   largest: HOW GOOD IT IS. Errors as mpm_step, mpm_surface_contact and mpm_surface_move, with the fault in the world.
+   Test: 33_surface, 37_surface_motion. */
 MPM_API mpm_status mpm_surface_step(mpm_surfaces *s, mpm_world *w, mpm_real dt);
 
 /* How surface a meets surface b (-1: any other body), in the last step. */
@@ -2031,7 +2031,7 @@ MPM_API mpm_status mpm_surfaces_make_room(mpm_surfaces *s, mpm_blob *blob)
 }
 
 /* As many bytes were read as the sizes of the surfaces say. */
-static inline mpm_status mpm__restored_sizes(mpm_surfaces *s, const mpm_blob *blob)
+static inline mpm_status mpm__surface_restored_sizes(mpm_surfaces *s, const mpm_blob *blob)
 {
     mpm_status st = mpm_want(s->steps >= 0, &s->fault, "steps of surfaces", (mpm_real)s->steps, -1);
     int32_t a;
@@ -2049,7 +2049,7 @@ static inline mpm_status mpm__restored_sizes(mpm_surfaces *s, const mpm_blob *bl
 }
 
 /* Faces of markers that there are, beside faces that there are. */
-static inline mpm_status mpm__restored_faces(const mpm_surface *c, mpm_fault *f)
+static inline mpm_status mpm__surface_restored_faces(const mpm_surface *c, mpm_fault *f)
 {
     mpm_status st = MPM_OK;
     int32_t i;
@@ -2064,7 +2064,7 @@ static inline mpm_status mpm__restored_faces(const mpm_surface *c, mpm_fault *f)
 }
 
 /* A meeting with a wall or another surface that there is, at a face of it. */
-static inline mpm_status mpm__restored_meet(mpm_surfaces *s, int32_t a, int32_t i, const mpm_meet *meet)
+static inline mpm_status mpm__surface_restored_meet(mpm_surfaces *s, int32_t a, int32_t i, const mpm_meet *meet)
 {
     const int32_t other = meet->other;
     mpm_status st = mpm_want(other == MPM_SURFACE_NONE || (other >= -s->walls && other < s->surfaces && other != a),
@@ -2076,7 +2076,7 @@ static inline mpm_status mpm__restored_meet(mpm_surfaces *s, int32_t a, int32_t 
 }
 
 /* Markers that lie somewhere, between markers that were there before them. */
-static inline mpm_status mpm__restored_markers(mpm_surfaces *s, int32_t a)
+static inline mpm_status mpm__surface_restored_markers(mpm_surfaces *s, int32_t a)
 {
     const mpm_surface *c = &s->surface[a];
     mpm_status st = MPM_OK;
@@ -2088,20 +2088,20 @@ static inline mpm_status mpm__restored_markers(mpm_surfaces *s, int32_t a)
         for (k = 0; k < 2 && st == MPM_OK; k++)
             st = mpm_want(m->parent[k] < i && m->parent[k] >= (i < c->layer.markers ? -1 : 0), &s->fault,
                           "parent of marker", (mpm_real)m->parent[k], i);
-        for (k = 0; k < MPM_SURFACE_MEETS && st == MPM_OK; k++) st = mpm__restored_meet(s, a, i, &m->meet[k]);
+        for (k = 0; k < MPM_SURFACE_MEETS && st == MPM_OK; k++) st = mpm__surface_restored_meet(s, a, i, &m->meet[k]);
     }
     return st;
 }
 
 MPM_API mpm_status mpm_surfaces_restored(mpm_surfaces *s, const mpm_world *w, const mpm_blob *blob)
 {
-    mpm_status st = mpm__restored_sizes(s, blob);
+    mpm_status st = mpm__surface_restored_sizes(s, blob);
     int32_t a;
     for (a = 0; a < s->surfaces && st == MPM_OK; a++) {
         st = mpm_want(s->surface[a].body < w->bodies, &s->fault, "body of surface", (mpm_real)s->surface[a].body, a);
-        if (st == MPM_OK) st = mpm__restored_faces(&s->surface[a], &s->fault);
+        if (st == MPM_OK) st = mpm__surface_restored_faces(&s->surface[a], &s->fault);
     }
-    for (a = 0; a < s->surfaces && st == MPM_OK; a++) st = mpm__restored_markers(s, a);
+    for (a = 0; a < s->surfaces && st == MPM_OK; a++) st = mpm__surface_restored_markers(s, a);
     if (st == MPM_OK) return st;
     for (a = 0; a < s->surfaces; a++) s->surface[a].markers = s->surface[a].faces = 0;
     mpm_surfaces_free(s);

@@ -73,7 +73,7 @@ static inline int impact_save(impact *s, const impact_case *c, output *out)
     return ok || report(&fault, path);
 }
 
-/* Before a step: a checkpoint, if one is due. Returns 1; 0 after a message; -1: stop here, the checkpoint is written. */
+/* Before a step: a checkpoint, if one is due. Returns 1; 0 after a message; -1: stop here, with one. */
 static inline int impact_goes_on(impact *s, const impact_case *c, output *out, impact_stops *k)
 {
     if (k->after > 0 && s->world.steps - out->first >= k->after) {

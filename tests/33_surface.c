@@ -279,8 +279,8 @@ static double hertz(int wall, int cells, double v, double factor, double *force,
     return radius;
 }
 
-/* Beside the sphere of finite size (sphere.h), which is stiffer than Hertz's by kappa a/R: the more cells in the contact
-   radius, the nearer. */
+/* Beside the sphere of finite size (sphere.h), which is stiffer than Hertz's by kappa a/R: the more cells in the
+   contact radius, the nearer. */
 static void spheres(void)
 {
     static const struct {
@@ -292,8 +292,8 @@ static void spheres(void)
         double force, duration, back, want_force, want_duration;
         const double a = hertz(row[k].wall, row[k].cells, row[k].speed, row[k].dt, &force, &duration, &back);
         sphere_impact((double)metal.poisson, a, &want_force, &want_duration);
-        printf("# sphere on a %s at %g m/s, %.1f cells in the contact radius: force %.4f, duration %.4f of Hertz's, which "
-               "a finite sphere has %.4f and %.4f of; %.4f of the speed\n", row[k].wall ? "wall" : "sphere",
+        printf("# sphere on a %s at %g m/s, %.1f cells in the contact radius: force %.4f, duration %.4f of Hertz's, "
+               "which a finite sphere has %.4f and %.4f of; %.4f of the speed\n", row[k].wall ? "wall" : "sphere",
                row[k].speed, a * row[k].cells, force, duration, want_force, want_duration, back);
         CHECK_RELATIVE("a sphere: force", force, want_force, row[k].within);
         CHECK_RELATIVE("... duration", duration, want_duration, row[k].within);

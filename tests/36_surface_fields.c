@@ -104,8 +104,8 @@ static void shown(const char *what, output *o, const mpm_surfaces *s, const mpm_
     CHECK_EQUAL("... all fields of all markers are there", f.missing, 0);
     if (f.missing) return;
     r = summed(s, w, &f, &opened, &off);
-    printf("# %s: p %.4g MPa on %.4g um2, gap %.4g um, G %.4g J/m2, W %.4g pJ on %.4g um2, drawn %.4g um, %.4g uN\n", what,
-           m.pressure_max, m.area, m.gap_min, m.dissipated, m.adhesion, m.bonded, opened, m.pull[2]);
+    printf("# %s: p %.4g MPa on %.4g um2, gap %.4g um, G %.4g J/m2, W %.4g pJ on %.4g um2, drawn %.4g um, %.4g uN\n",
+           what, m.pressure_max, m.area, m.gap_min, m.dissipated, m.adhesion, m.bonded, opened, m.pull[2]);
     CHECK_NEAR("... places, velocities, bodies", off, 0, 10 * single);
     CHECK_RELATIVE("... highest pressure", r.pressure_max, m.pressure_max, single);
     CHECK_RELATIVE("... area under pressure", r.area, m.area, 100 * (double)MPM_EPSILON);

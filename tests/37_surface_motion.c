@@ -1,9 +1,9 @@
-/* 37_surface_motion - elastic bodies on surfaces that roll, slide and bounce as rigid ones do: a disk and a sphere down an
-   incline, a disk thrown at a wall and at a block; the largest time step. SPDX-License-Identifier: MIT
+/* 37_surface_motion - elastic bodies on surfaces that roll, slide and bounce as rigid ones do: a disk and a sphere down
+   an incline, a disk thrown at a wall and at a block; the largest time step. SPDX-License-Identifier: MIT
 
-   A body is turned, and its surface moves, as if it were touched 0.42 cells inside: a traction accelerates the nodes at a
-   surface, and these the points around them, whose middle lies there. So a disk of 10 cells' radius rolls as one of 9.6
-   does that has its inertia, 3.4 % slower: the loss goes with the cell. */
+   A body is turned, and its surface moves, as if it were touched 0.4 cells inside: a traction accelerates the nodes at
+   a surface, and these the points around them, whose middle lies there. A disk of 10 cells' radius rolls 2 % slower
+   than a rigid one, a ball of 6 cells 5 %, and friction turns the disk by 6 % less: the loss goes with the cell. */
 #define MPM_IMPLEMENTATION
 #include "scene.h"
 #include "mpm_surface.h"
@@ -93,8 +93,8 @@ static double incline(const char *what, mpm_geometry geometry, double cells, dou
     const double speed = t * (rolls ? g * sin(angle) / (1 + j) : g * (sin(angle) - mu * cos(angle)));
     const double spin = rolls ? speed / R : t * mu * g * cos(angle) / (j * R);
     const double normal = g * cos(angle) * t + m.v[2], along = g * sin(angle) * t - m.v[0];
-    printf("# %s, mu = %g, %g cells in its radius: speed %.4f, turning %.4f of a rigid one's, friction %.4f of mu N\n", what,
-           mu, cells, m.v[0] / speed, m.spin / spin, along / (mu * normal));
+    printf("# %s, mu = %g, %g cells in its radius: speed %.4f, turning %.4f of a rigid one's, friction %.4f of mu N\n",
+           what, mu, cells, m.v[0] / speed, m.spin / spin, along / (mu * normal));
     CHECK_RELATIVE(what, m.v[0], speed, near_v);
     CHECK_RELATIVE(rolls ? "... it rolls" : "... it slides, and turns", m.spin, spin, near_spin);
     CHECK_NEAR("... and stays on it", m.v[2], 0, 0.05 * speed);
@@ -113,8 +113,8 @@ static void inclines(void)
 
 /* ---- thrown --------------------------------------------------------------------------------------- */
 
-/* A disk of 10 cells' radius thrown at a wall or a block under an angle, so that it slides throughout: the impulse along
-   is mu times that across, and turns it by R that over its inertia. */
+/* A disk of 10 cells' radius thrown at a wall or a block under an angle, so that it slides throughout: the impulse
+   along is mu times that across, and turns it by R that over its inertia. */
 static void thrown(int wall)
 {
     const mpm_real point[3] = {0, 0, 0}, up[3] = {0, 0, 1};
@@ -187,7 +187,7 @@ static double most_energy(double stiffness, double factor)
     return most / before;
 }
 
-/* With the damper, flat faces stand steps of 1.1/sqrt(stiffness) of the critical one, and none of 1.6/sqrt(stiffness). */
+/* With the damper, flat faces stand steps of 1.1/sqrt(stiffness) of the critical one, none of 1.6/sqrt(stiffness). */
 static void largest_step(void)
 {
     static const double stiffness[3] = {5, 20, 50};

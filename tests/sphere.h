@@ -12,8 +12,8 @@
 #define SPHERE_SHAPES 4    /* pressures (1 - s^2/a^2)^(k + 1/2) on the cap s < a */
 #define SPHERE_PLACES 800  /* rings of the cap */
 
-/* Surface displacement u_r P_n, u_t dP_n/dt (t: the angle from the pole) under tractions p P_n and q dP_n/dt, for radius
-   1 and shear modulus 1, seen from the centre of mass. */
+/* Surface displacement u_r P_n, u_t dP_n/dt (t: the angle from the pole) under tractions p P_n and q dP_n/dt, for
+   radius 1 and shear modulus 1, seen from the centre of mass. */
 static inline void sphere_mode(double nu, int n, double p, double q, double *u_r, double *u_t)
 {
     const double m = (double)n * n;

@@ -54,7 +54,8 @@
                    _put_integer, _close, _drop
      text files    mpm_io_json_*, mpm_io_csv_*
      ParaView      mpm_io_scalar .. mpm_io_int32, mpm_io_vtu, mpm_io_body_numbers, mpm_io_pvd_begin, mpm_io_pvd_add
-     restart       mpm_io_checkpoint_write, _checkpoint_read, _world_text, _line, _line_number
+     restart       mpm_io_checkpoint_write, _checkpoint_read, _checkpoint_sizes, _world_text, _line,
+                   _line_number
      pictures      mpm_io_png
 
    CONFIGURATION (define before including)
@@ -113,6 +114,7 @@
 #define mpm_io_pvd_add mpm_io_pvd_add_f32
 #define mpm_io_checkpoint_write mpm_io_checkpoint_write_f32
 #define mpm_io_checkpoint_read mpm_io_checkpoint_read_f32
+#define mpm_io_checkpoint_sizes mpm_io_checkpoint_sizes_f32
 #define mpm_io_world_text mpm_io_world_text_f32
 #define mpm_io_line mpm_io_line_f32
 #define mpm_io_line_number mpm_io_line_number_f32
@@ -317,6 +319,10 @@ MPM_API mpm_status mpm_io_checkpoint_write(const char *path, const char *text, c
    MPM_ERR_FILE: missing, damaged, or holding other blobs (the fault tells which). Test: 40_io "checkpoint". */
 MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const char *text, mpm_blob *blob, int count,
                                           mpm_fault *fault);
+/* How many bytes of each blob are stored, to blob[].bytes, in a file that is verified as for reading: to make room for
+   those that grow while a run goes. Errors as there, but for a room that is too small. Test: 40_io "checkpoint". */
+MPM_API mpm_status mpm_io_checkpoint_sizes(const char *path, const char *text, mpm_blob *blob, int count,
+                                           mpm_fault *fault);
 
 /* A world's description as such a text, into buffer[n], cut to fit: grid, sides, contact rules and bodies, one
    "name value" a line; 1500 bytes, 300 for each rule of mpm_contact_set and 900 for each body suffice. Materials are
@@ -1418,16 +1424,17 @@ static inline mpm_status mpm__io_text_verify(FILE *in, const char *text, uint32_
     return mpm_fail(fault, MPM_ERR_VERSION, *differs ? differs : "more lines in the file", 0, line);
 }
 
-/* Whether a stored blob is the one asked for and fits. */
-static inline int mpm__io_blob_fits(const mpm__io_blob_head *head, const mpm_blob *b)
+/* Whether a stored blob is the one asked for and fits; with `any` also if its room is too small. */
+static inline int mpm__io_blob_fits(const mpm__io_blob_head *head, const mpm_blob *b, int any)
 {
     mpm__io_blob_head wanted = mpm__io_blob_head_make(b->name, 0);
     if (memcmp(head->name, wanted.name, sizeof head->name) != 0) return 0;
-    return b->room > 0 ? head->bytes <= b->room : head->bytes == b->bytes;
+    return b->room > 0 ? any || head->bytes <= b->room : head->bytes == b->bytes;
 }
 
-/* Compares stamp, text, names, sizes and checksum with what is asked for; changes nothing. */
-static inline mpm_status mpm__io_checkpoint_verify(FILE *in, const char *text, const mpm_blob *blob, int count,
+/* Compares stamp, text, names, sizes (with `any`: not with the room) and checksum with what is asked for; changes
+   nothing. */
+static inline mpm_status mpm__io_checkpoint_verify(FILE *in, const char *text, const mpm_blob *blob, int count, int any,
                                                    mpm_fault *fault)
 {
     mpm__io_stamp found, mine = mpm__io_stamp_make(count);
@@ -1444,7 +1451,7 @@ static inline mpm_status mpm__io_checkpoint_verify(FILE *in, const char *text, c
         mpm__io_blob_head head;
         if (fread(&head, sizeof head, 1, in) != 1)
             return mpm_fail(fault, MPM_ERR_FILE, "checkpoint ends early", 0, i);
-        if (!mpm__io_blob_fits(&head, &blob[i]))
+        if (!mpm__io_blob_fits(&head, &blob[i], any))
             return mpm_fail(fault, MPM_ERR_FILE, "name or size of blob differs", 0, i);
         crc = mpm__io_crc(crc, &head, sizeof head);
         if (!mpm__io_skip_summed(in, head.bytes, &crc))
@@ -1456,23 +1463,27 @@ static inline mpm_status mpm__io_checkpoint_verify(FILE *in, const char *text, c
     return MPM_OK;
 }
 
-/* The bytes of the blobs, into their places. */
-static inline int mpm__io_read_blobs(FILE *in, const char *text, mpm_blob *blob, int count)
+/* The sizes of the blobs (sizes = 1), or their bytes, into their places. */
+static inline int mpm__io_read_blobs(FILE *in, const char *text, mpm_blob *blob, int count, int sizes)
 {
     long skip = (long)(sizeof(mpm__io_stamp) + sizeof(mpm__io_blob_head) + strlen(text));
     int i;
     if (fseek(in, skip, SEEK_SET) != 0) return 0;
     for (i = 0; i < count; i++) {
         mpm__io_blob_head head;
-        if (fread(&head, sizeof head, 1, in) != 1 || !mpm__io_blob_fits(&head, &blob[i])) return 0;
+        uint32_t unused = 0;
+        if (fread(&head, sizeof head, 1, in) != 1 || !mpm__io_blob_fits(&head, &blob[i], sizes)) return 0;
         blob[i].bytes = (size_t)head.bytes;
-        if (blob[i].bytes > 0 && fread(blob[i].data, 1, blob[i].bytes, in) != blob[i].bytes) return 0;
+        if (sizes ? !mpm__io_skip_summed(in, head.bytes, &unused)
+                  : blob[i].bytes > 0 && fread(blob[i].data, 1, blob[i].bytes, in) != blob[i].bytes)
+            return 0;
     }
     return 1;
 }
 
-MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const char *text, mpm_blob *blob, int count,
-                                          mpm_fault *fault)
+/* Verifies a checkpoint, then takes its bytes or their sizes. */
+static inline mpm_status mpm__io_checkpoint_take(const char *path, const char *text, mpm_blob *blob, int count,
+                                                 int sizes, mpm_fault *fault)
 {
     FILE *in;
     int good = 1;
@@ -1481,10 +1492,22 @@ MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const char *text, mp
     in = path ? fopen(path, "rb") : NULL;
     if (!in) return mpm_fail(fault, MPM_ERR_FILE, "path: cannot be read", 0, -1);
     if (!text) text = "";
-    status = mpm__io_checkpoint_verify(in, text, blob, count, fault);
-    if (status == MPM_OK) good = mpm__io_read_blobs(in, text, blob, count);
+    status = mpm__io_checkpoint_verify(in, text, blob, count, sizes, fault);
+    if (status == MPM_OK) good = mpm__io_read_blobs(in, text, blob, count, sizes);
     fclose(in);
     return good ? status : mpm_fail(fault, MPM_ERR_FILE, "path: reading failed", 0, -1);
+}
+
+MPM_API mpm_status mpm_io_checkpoint_read(const char *path, const char *text, mpm_blob *blob, int count,
+                                          mpm_fault *fault)
+{
+    return mpm__io_checkpoint_take(path, text, blob, count, 0, fault);
+}
+
+MPM_API mpm_status mpm_io_checkpoint_sizes(const char *path, const char *text, mpm_blob *blob, int count,
+                                           mpm_fault *fault)
+{
+    return mpm__io_checkpoint_take(path, text, blob, count, 1, fault);
 }
 
 /* ---- descriptions as text ------------------------------------------------------------------- */

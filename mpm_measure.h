@@ -28,7 +28,7 @@
    CONTENTS
      rebound and shape     mpm_rebound_of, mpm_rebound_from, mpm_pieces_of, mpm_splat_measure
      the interface         mpm_interface_of
-     pulling apart         mpm_grip_apply, mpm_pull_desc_default, mpm_pull_begin, mpm_pull_apply
+     pulling apart         mpm_grip_apply, mpm_pull_desc_default, mpm_pull_begin, mpm_pull_tension, _apply
      literature            mpm_bonded_fraction, mpm_relative_strength, mpm_critical_velocity_*
      calibration           mpm_logistic_*
 
@@ -58,6 +58,7 @@
 #define mpm_pull_desc_default mpm_pull_desc_default_f32
 #define mpm_pull_begin mpm_pull_begin_f32
 #define mpm_pull_apply mpm_pull_apply_f32
+#define mpm_pull_tension mpm_pull_tension_f32
 #define mpm_bonded_fraction mpm_bonded_fraction_f32
 #define mpm_relative_strength mpm_relative_strength_f32
 #define mpm_critical_velocity_2003 mpm_critical_velocity_2003_f32
@@ -184,6 +185,10 @@ MPM_API mpm_status mpm_pull_begin(mpm_pull *p, const mpm_world *w, const mpm_pul
 /* As mpm_grip_apply, for both grips. Returns 1 when a sample is complete: force, grip_force and the peak
    are new; else 0. Test: 32_pull. */
 MPM_API int mpm_pull_apply(mpm_pull *p, mpm_world *w);
+
+/* A tension between the bodies [force] that this step has beside that at nodes, as on surfaces: what mpm_pull_apply
+   counts then. Before it, in the same step. Test: 32_pull. */
+MPM_API void mpm_pull_tension(mpm_pull *p, const mpm_world *w, double force);
 
 /* ---- estimates from the literature ------------------------------------------------------------ */
 
@@ -569,6 +574,8 @@ MPM_API mpm_status mpm_pull_begin(mpm_pull *p, const mpm_world *w, const mpm_pul
     p->grip[0].axes = p->grip[1].axes = d->axes;
     return MPM_OK;
 }
+
+MPM_API void mpm_pull_tension(mpm_pull *p, const mpm_world *w, double force) { p->sum[0] += force * (double)w->dt; }
 
 MPM_API int mpm_pull_apply(mpm_pull *p, mpm_world *w)
 {

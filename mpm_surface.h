@@ -54,6 +54,7 @@
                      mpm_surface_wall_add
      the step        mpm_surface_step = the phases of mpm.h with mpm_surface_contact and mpm_surface_move
      looking at it   mpm_surface_meets: who touches whom, and how hard; mpm_surface_adhesion of one meeting
+     restart         mpm_surfaces_blobs, _make_room, _restored
 
    ADHESION (on request: surfaces.adhesion > 0)
      Plastic work in a layer of a physical depth l under both surfaces, from the first touch on, is the interface's
@@ -63,7 +64,17 @@
      Where it exceeds G_c it leaves an adhesion of W = W0 (G/G_c - 1) per area: a traction 2 W/delta_c at most, spent
      when drawn open by delta_c (S5). It belongs to the two bodies that met, and costs what it takes: ledger.hold.
 
-   WHAT IT DOES NOT DO: contact of a body with itself; more than two other bodies at a marker; checkpoints of surfaces.
+   HOW GOOD IT IS (splines, the default penalty; h: the cell)
+     Time step     with the damper stable up to 1.1/sqrt(stiffness) of mpm_time_step's factor, 0.5 at the default: above
+                   it contact makes energy without bound. Without the damper some is made below it too, of bars that
+                   meet 5 % at most at 0.2, and more the stiffer the penalty (37_surface_motion)
+     Normal force  an elastic sphere bounces with the force and in the time of its own theory to 2 % where two cells or
+                   more lie in the contact radius a; Hertz's half space is softer by 0.6 a/R (33_surface)
+     Friction      bodies that slide take mu times the normal impulse, to 0.2 % (37_surface_motion)
+     Turning       a body is turned, and rolls, as if it were touched 0.4 h inside, for that is where the points around
+                   surface nodes are: a disk of 10 cells' radius rolls 2 % too slow (37_surface_motion)
+
+   WHAT IT DOES NOT DO: contact of a body with itself; more than two other bodies at a marker.
 
    Sources: penalty between a surface's points and another's faces, taken both ways, and friction by a spring that
    slips: Wriggers, Computational Contact Mechanics, Springer (2006). */
@@ -88,6 +99,9 @@
 #define mpm_surface_step mpm_surface_step_f32
 #define mpm_surface_meets mpm_surface_meets_f32
 #define mpm_surface_adhesion mpm_surface_adhesion_f32
+#define mpm_surfaces_blobs mpm_surfaces_blobs_f32
+#define mpm_surfaces_make_room mpm_surfaces_make_room_f32
+#define mpm_surfaces_restored mpm_surfaces_restored_f32
 #endif
 
 #ifdef __cplusplus
@@ -230,8 +244,9 @@ MPM_API mpm_status mpm_surface_contact(mpm_surfaces *s, mpm_world *w);
    Test: 33_surface. */
 MPM_API mpm_status mpm_surface_move(mpm_surfaces *s, mpm_world *w);
 
-/* The step of mpm.h, of dt [time] > 0, with contact on surfaces in place of contact at nodes. Errors as mpm_step,
-   mpm_surface_contact and mpm_surface_move, with the fault in the world. Test: 33_surface. */
+/* The step of mpm.h, of dt [time] > 0, with contact on surfaces in place of contact at nodes: the
+   largest: HOW GOOD IT IS. Errors as mpm_step, mpm_surface_contact and mpm_surface_move, with the fault in the world.
+   Test: 33_surface, 37_surface_motion. */
 MPM_API mpm_status mpm_surface_step(mpm_surfaces *s, mpm_world *w, mpm_real dt);
 
 /* How surface a meets surface b (-1: any other body), in the last step. */
@@ -252,6 +267,28 @@ MPM_API mpm_meeting mpm_surface_meets(const mpm_surfaces *s, const mpm_world *w,
 
 /* W [energy/area], the adhesion of a marker's meeting: 0 where G is below G_c, or it is spent. Test: 33_surface. */
 MPM_API mpm_real mpm_surface_adhesion(const mpm_surfaces *s, const mpm_meet *meet);
+
+/* ---- restart -------------------------------------------------------------------------------- */
+
+/* The state of all surfaces and walls: what the next step depends on beside the world and the parameters. Fills blob[],
+   at most MPM_SURFACES_BLOBS(s->surfaces) of them, and returns how many. To go on from stored ones, set world and
+   surfaces up as before, in the same order and before a step; look how much is stored (mpm_io_checkpoint_sizes: faces
+   were halved), make room for it, read, and call mpm_restored, then mpm_surfaces_restored:
+       mpm_surfaces_blobs(&s, blob);
+       if (mpm_io_checkpoint_sizes(path, text, blob, n, &fault) < 0 || mpm_surfaces_make_room(&s, blob) < 0 ||
+           mpm_io_checkpoint_read(path, text, blob, n, &fault) < 0 || mpm_surfaces_restored(&s, &w, blob) < 0) ...
+   Parameters are description: lines of the checkpoint's text. Test: 35_surface_restart, bit for bit. */
+#define MPM_SURFACES_BLOBS(surfaces) (2 + 5 * (surfaces))
+MPM_API int mpm_surfaces_blobs(mpm_surfaces *s, mpm_blob *blob);
+
+/* Memory for markers and faces of as many bytes as blob[] now says, which then leads there. MPM_ERR_ARGUMENT: a size
+   that is none of whole markers or faces; MPM_ERR_MEMORY. Test: 35_surface_restart. */
+MPM_API mpm_status mpm_surfaces_make_room(mpm_surfaces *s, mpm_blob *blob);
+
+/* Checks what was read into the blobs of mpm_surfaces_blobs, before anything of it is used: counts, numbers of markers
+   and faces, places, of the restored world. MPM_ERR_ARGUMENT / NAN, named by s->fault: s is then as after
+   mpm_surfaces_free. Test: 35_surface_restart. */
+MPM_API mpm_status mpm_surfaces_restored(mpm_surfaces *s, const mpm_world *w, const mpm_blob *blob);
 
 #ifdef __cplusplus
 }
@@ -1946,6 +1983,127 @@ MPM_API mpm_meeting mpm_surface_meets(const mpm_surfaces *s, const mpm_world *w,
         if (i != a && (b < 0 || i == b)) mpm__surface_collect(s, i, a, share, -1, &r);
     if (r.touched > 0) r.dissipated /= r.touched;
     return r;
+}
+
+/* ---- restart --------------------------------------------------------------------------------- */
+
+#define MPM__SURFACE_ARRAYS 3 /* of each surface, first among its blobs: markers, faces, those beside them */
+
+MPM_API int mpm_surfaces_blobs(mpm_surfaces *s, mpm_blob *blob)
+{
+    int32_t a;
+    int n = 0;
+    for (a = 0; a < s->surfaces; a++) {
+        mpm_surface *c = &s->surface[a];
+        const size_t faces = (size_t)c->faces, room = (size_t)c->face_capacity;
+        blob[n++] = mpm_blob_array("markers of surface", c->marker, (size_t)c->markers, (size_t)c->marker_capacity,
+                                   sizeof *c->marker);
+        blob[n++] = mpm_blob_array("faces of surface", c->face, faces, room, sizeof *c->face);
+        blob[n++] = mpm_blob_array("faces beside them", c->beside, faces, room, sizeof *c->beside);
+        blob[n++] = mpm_blob_of("size of surface", &c->markers, 2 * sizeof c->markers); /* and faces, side by side */
+        blob[n++] = mpm_blob_of("means of layer", c->layer.mean, (size_t)c->layer.markers * sizeof *c->layer.mean);
+    }
+    blob[n++] = mpm_blob_of("walls", s->wall, (size_t)s->walls * sizeof s->wall[0]);
+    blob[n++] = mpm_blob_of("steps of surfaces", &s->steps, sizeof s->steps);
+    return n;
+}
+
+MPM_API mpm_status mpm_surfaces_make_room(mpm_surfaces *s, mpm_blob *blob)
+{
+    const size_t most = INT32_MAX / 2;
+    mpm_status st = MPM_OK;
+    int32_t a;
+    for (a = 0; a < s->surfaces && st == MPM_OK; a++) {
+        mpm_surface *c = &s->surface[a];
+        mpm_blob *of = blob + 5 * a;
+        const size_t markers = of[0].bytes / sizeof *c->marker, faces = of[1].bytes / sizeof *c->face;
+        st = mpm_want(markers < most && of[0].bytes % sizeof *c->marker == 0, &s->fault, of[0].name,
+                      (mpm_real)of[0].bytes, a);
+        if (st == MPM_OK)
+            st = mpm_want(faces < most && of[1].bytes % sizeof *c->face == 0, &s->fault, of[1].name,
+                          (mpm_real)of[1].bytes, a);
+        if (st == MPM_OK) st = mpm__surface_grow(c, (int32_t)markers, (int32_t)faces, &s->fault);
+    }
+    mpm_surfaces_blobs(s, blob);
+    return st;
+}
+
+/* As many bytes were read as the sizes of the surfaces say. */
+static inline mpm_status mpm__surface_restored_sizes(mpm_surfaces *s, const mpm_blob *blob)
+{
+    mpm_status st = mpm_want(s->steps >= 0, &s->fault, "steps of surfaces", (mpm_real)s->steps, -1);
+    int32_t a;
+    int k;
+    for (a = 0; a < s->surfaces && st == MPM_OK; a++) {
+        const mpm_surface *c = &s->surface[a];
+        const size_t one[MPM__SURFACE_ARRAYS] = {sizeof *c->marker, sizeof *c->face, sizeof *c->beside};
+        st = mpm_want(c->markers >= c->layer.markers && c->markers >= 2 && c->faces >= 1, &s->fault, "size of surface",
+                      (mpm_real)c->markers, a);
+        for (k = 0; k < MPM__SURFACE_ARRAYS && st == MPM_OK; k++)
+            st = mpm_want(blob[5 * a + k].bytes == one[k] * (size_t)(k ? c->faces : c->markers), &s->fault,
+                          blob[5 * a + k].name, (mpm_real)blob[5 * a + k].bytes, a);
+    }
+    return st;
+}
+
+/* Faces of markers that there are, beside faces that there are. */
+static inline mpm_status mpm__surface_restored_faces(const mpm_surface *c, mpm_fault *f)
+{
+    mpm_status st = MPM_OK;
+    int32_t i;
+    int k;
+    for (i = 0; i < c->faces && st == MPM_OK; i++)
+        for (k = 0; k < c->corners && st == MPM_OK; k++) {
+            const int32_t m = c->face[i][k], g = c->beside[i][k];
+            st = mpm_want(m >= 0 && m < c->markers, f, "marker of face", (mpm_real)m, i);
+            if (st == MPM_OK) st = mpm_want(g >= -1 && g < c->faces, f, "face beside face", (mpm_real)g, i);
+        }
+    return st;
+}
+
+/* A meeting with a wall or another surface that there is, at a face of it. */
+static inline mpm_status mpm__surface_restored_meet(mpm_surfaces *s, int32_t a, int32_t i, const mpm_meet *meet)
+{
+    const int32_t other = meet->other;
+    mpm_status st = mpm_want(other == MPM_SURFACE_NONE || (other >= -s->walls && other < s->surfaces && other != a),
+                             &s->fault, "other of meeting", (mpm_real)other, i);
+    if (st == MPM_OK && other >= 0)
+        st = mpm_want(meet->face >= 0 && meet->face < s->surface[other].faces, &s->fault, "face of meeting",
+                      (mpm_real)meet->face, i);
+    return st;
+}
+
+/* Markers that lie somewhere, between markers that were there before them. */
+static inline mpm_status mpm__surface_restored_markers(mpm_surfaces *s, int32_t a)
+{
+    const mpm_surface *c = &s->surface[a];
+    mpm_status st = MPM_OK;
+    int32_t i;
+    int k;
+    for (i = 0; i < c->markers && st == MPM_OK; i++) {
+        const mpm_marker *m = &c->marker[i];
+        for (k = 0; k < 3 && st == MPM_OK; k++) st = mpm_want(1, &s->fault, "place of a marker", m->x[k], i);
+        for (k = 0; k < 2 && st == MPM_OK; k++)
+            st = mpm_want(m->parent[k] < i && m->parent[k] >= (i < c->layer.markers ? -1 : 0), &s->fault,
+                          "parent of marker", (mpm_real)m->parent[k], i);
+        for (k = 0; k < MPM_SURFACE_MEETS && st == MPM_OK; k++) st = mpm__surface_restored_meet(s, a, i, &m->meet[k]);
+    }
+    return st;
+}
+
+MPM_API mpm_status mpm_surfaces_restored(mpm_surfaces *s, const mpm_world *w, const mpm_blob *blob)
+{
+    mpm_status st = mpm__surface_restored_sizes(s, blob);
+    int32_t a;
+    for (a = 0; a < s->surfaces && st == MPM_OK; a++) {
+        st = mpm_want(s->surface[a].body < w->bodies, &s->fault, "body of surface", (mpm_real)s->surface[a].body, a);
+        if (st == MPM_OK) st = mpm__surface_restored_faces(&s->surface[a], &s->fault);
+    }
+    for (a = 0; a < s->surfaces && st == MPM_OK; a++) st = mpm__surface_restored_markers(s, a);
+    if (st == MPM_OK) return st;
+    for (a = 0; a < s->surfaces; a++) s->surface[a].markers = s->surface[a].faces = 0;
+    mpm_surfaces_free(s);
+    return st;
 }
 
 #ifdef __cplusplus

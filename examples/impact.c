@@ -7,8 +7,7 @@
 
    The loop in main() is the method, one call per phase. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
-#include "impact_options.h"
-#include "output.h"
+#include "impact_restart.h"
 
 /* "al", or "al on cu". */
 static const char *metals(const impact *s, char *text, size_t n)
@@ -168,14 +167,16 @@ static void print_table(const impact *s, const impact_case *c, const impact_resu
            (double)mpm_bytes_used(w) / (double)r->all.points);
 }
 
-/* Time integration: one call per phase. */
-static int run(impact *s, const impact_case *c, output *o)
+/* Time integration: one call per phase. Returns 1; 0 after a message; -1 when stopped before, with a checkpoint. */
+static int run(impact *s, const impact_case *c, output *o, impact_stops *stops)
 {
     mpm_world *w = &s->world;
+    int status = 1;
     output_start(o, w);
     for (;;) {
         if (output_due(o, w, s->steps) && !write_frame(s, c, o)) return 0;
         if (w->steps >= s->steps) break;
+        if ((status = impact_goes_on(s, c, o, stops)) <= 0) break;
 
         if (s->surfaces.surfaces > 0) { /* contact on surfaces: mpm_surface.h */
             if (mpm_surface_step(&s->surfaces, w, s->dt) < 0) return report(&w->fault, "step");
@@ -199,6 +200,19 @@ static int run(impact *s, const impact_case *c, output *o)
     }
     output_progress_end(o);
     output_cpu(o);
+    return status;
+}
+
+/* Begins the output, or goes on from the checkpoint in its folder. Returns 1, or 0 after a message. */
+static int start(impact *s, const impact_case *c, output *o, impact_stops *stops, int resume)
+{
+    char path[PATH_BYTES];
+    mpm_fault fault;
+    if (!resume) return output_begin(o);
+    if (impact_checkpoint(s, c, o, 0, file_in(o->folder, "checkpoint.bin", path, sizeof path), &fault) < 0)
+        return report(&fault, path);
+    impact_resumed(s, o);
+    stops->saved = o->cpu;
     return 1;
 }
 
@@ -206,7 +220,9 @@ static int run(impact *s, const impact_case *c, output *o)
 static int finish(const impact *s, const impact_case *c, output *o, const option *options, int n)
 {
     const impact_result r = impact_measure(s, c);
+    char path[PATH_BYTES];
     if (!write_summary(s, &r, o, options, n) || (o->frames > 0 && !write_picture(s, c, o))) return 0;
+    remove(file_in(o->folder, "checkpoint.bin", path, sizeof path));
     if (o->quiet) return 1;
     print_table(s, c, &r, o->cpu);
     printf("\n  %s/summary.json%s\n", o->folder, o->frames > 0 ? ", impact.png, impact.pvd" : "");
@@ -222,18 +238,27 @@ static int carry_out(int argc, char **argv)
     int n = impact_options(&c, options);
     const char *about = "A metal particle hits a metal plate: material point method with bonding.\n"
                         "Writes summary.json, impact.png, impact.pvd (ParaView) and frames into the output folder.";
+    impact_stops stops = {0, 0, 0};
     char message[300];
     impact s;
-    int parsed, ok;
+    int parsed, status, resume = 0;
     output_options(&o, options, &n);
+    option_add(options, &n, "checkpoint", OPTION_REAL, &stops.seconds,
+               "CPU seconds from one checkpoint.bin in the output folder to the next; 0: none");
+    option_add(options, &n, "stop-after", OPTION_INTEGER, &stops.after,
+               "write one after so many steps and stop; 0: never");
+    option_add(options, &n, "resume", OPTION_FLAG, &resume, "go on from it, with the options that it was written with");
     parsed = options_parse(argc, argv, about, options, n);
     if (parsed) return parsed < 0 ? 1 : 0;
     impact_complete(&c);
-    if (!output_check(&o, message, sizeof message) || !impact_begin(&s, &c, message, sizeof message))
+    if (!output_check(&o, message, sizeof message) || !impact_stops_check(&stops, message, sizeof message) ||
+        !impact_begin(&s, &c, message, sizeof message))
         return !complain(message);
-    ok = output_begin(&o) && run(&s, &c, &o) && finish(&s, &c, &o, options, n);
+    status = start(&s, &c, &o, &stops, resume) ? run(&s, &c, &o, &stops) : 0;
+    if (status < 0) impact_stopped(&s, "add --resume");
+    if (status > 0) status = finish(&s, &c, &o, options, n);
     impact_end(&s);
-    return ok ? 0 : 1;
+    return status > 0 ? 0 : status < 0 ? 3 : 1;
 }
 
 int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

@@ -83,7 +83,7 @@ static mpm_status hold(impact *s, mpm_pull *p)
     if (s->surfaces.surfaces > 0) {
         if (mpm_surface_contact(&s->surfaces, w) < 0) return (w->fault = s->surfaces.fault).status;
         m = mpm_surface_meets(&s->surfaces, w, IMPACT_PARTICLE, IMPACT_SUBSTRATE);
-        p->sum[0] -= (m.force[2] + m.pull[2]) * (double)s->dt;
+        mpm_pull_tension(p, w, -(m.force[2] + m.pull[2]));
         mpm_grid_update(w);
         return MPM_OK;
     }

@@ -44,8 +44,8 @@ static mpm_pull_desc pulling(double velocity)
     return d;
 }
 
-/* A step of the pull; the bond stays as it is. Returns 0, or -1 on failure. */
-static int step(mpm_pull *p, mpm_world *w, const mpm_bond *b, mpm_real dt)
+/* A step of the pull; the bond stays as it is, and they bear `more` beside it. Returns 0, or -1 on failure. */
+static int step(mpm_pull *p, mpm_world *w, const mpm_bond *b, mpm_real dt, double more)
 {
     if (mpm_locate(w, dt) < 0) return -1;
     mpm_p2g(w);
@@ -54,6 +54,7 @@ static int step(mpm_pull *p, mpm_world *w, const mpm_bond *b, mpm_real dt)
     mpm_contact_find(w);
     mpm_bond_nodes(b, w);
     mpm_contact_apply(w);
+    mpm_pull_tension(p, w, more);
     mpm_pull_apply(p, w);
     mpm_g2p(w);
     mpm_musl(w);
@@ -63,7 +64,7 @@ static int step(mpm_pull *p, mpm_world *w, const mpm_bond *b, mpm_real dt)
 }
 
 /* Draws for a number of samples of 5 ns, and returns how it ended. */
-static mpm_pull draw(mpm_world *w, double velocity, long samples, int *ok)
+static mpm_pull draw(mpm_world *w, double velocity, long samples, double more, int *ok)
 {
     const mpm_units u = mpm_units_um_us_ng();
     const mpm_bond b = mpm_bond_default(&u);
@@ -72,7 +73,7 @@ static mpm_pull draw(mpm_world *w, double velocity, long samples, int *ok)
     mpm_pull p;
     *ok = mpm_pull_begin(&p, w, &d, NULL) == MPM_OK;
     while (*ok && p.samples < samples)
-        if (step(&p, w, &b, dt) < 0) *ok = 0;
+        if (step(&p, w, &b, dt, more) < 0) *ok = 0;
     return p;
 }
 
@@ -86,7 +87,7 @@ static void elastic(void)
     mpm_pull p;
     double strain, stored;
     int ok;
-    p = draw(&w, 0.1, 40, &ok);
+    p = draw(&w, 0.1, 40, 0, &ok);
     CHECK_TRUE("two bonded elastic cubes", ok);
     strain = (p.separation - 0.5 * 0.1 * 0.005) / 6; /* in the middle of the last sample */
     CHECK_RELATIVE("tension between the bodies is E eps A", p.force, young * strain * 16, 0.02);
@@ -112,7 +113,7 @@ static void yields(void)
     int ok;
     m.strength = MPM_STRENGTH_LINEAR;
     m.linear_yield = 150;
-    p = draw(&w, 0.25, 40, &ok);
+    p = draw(&w, 0.25, 40, 0, &ok);
     CHECK_TRUE("two bonded cubes that yield at 150 MPa", ok);
     CHECK_NEAR("bear the yield stress at most", p.peak_stress, 157, 7);
     CHECK_NEAR("... and keep bearing it", p.force / 16, 157, 7);
@@ -127,13 +128,18 @@ static void unbonded(void)
     mpm_pull p;
     mpm_totals upper, lower;
     int ok;
-    p = draw(&w, 0.1, 40, &ok);
+    p = draw(&w, 0.1, 40, 0, &ok);
     CHECK_TRUE("two cubes that have nearly bonded", ok);
     upper = mpm_body_totals(&w, 0);
     lower = mpm_body_totals(&w, 1);
     CHECK_NEAR("bear nothing", p.peak_stress, 0, 1e-6 * young);
     CHECK_NEAR("the upper one goes along", upper.low[2] - 0.25, p.separation, 0.05 * p.separation);
     CHECK_NEAR("the lower one stays", lower.high[2] + 0.25, 0, 1e-3 * p.separation);
+    mpm_free(&w);
+    w = cubes(&m, 0.99);
+    p = draw(&w, 0.1, 5, 48, &ok);
+    CHECK_RELATIVE("... but what is told of besides", p.force, 48, 1e4 * (double)MPM_EPSILON);
+    CHECK_RELATIVE("... as a stress", p.peak_stress, 3, 1e4 * (double)MPM_EPSILON);
     mpm_free(&w);
 }
 

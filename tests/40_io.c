@@ -600,26 +600,6 @@ static void test_csv(void)
 enum { POINTS = 37 };
 static mpm_real field_data[9][POINTS];
 
-/* The appended array of a given name: its bytes and their number, as the tag's offset says. */
-static const unsigned char *vtu_array(const unsigned char *file, size_t n, const char *name,
-                                      const char *type, uint64_t *bytes)
-{
-    char tag[96];
-    const char *text = (const char *)file, *found, *offset;
-    size_t start = 0;
-    while (start + 22 < n && memcmp(text + start, "encoding=\"raw\">\n_", 17) != 0) start++;
-    start += 17;
-    snprintf(tag, sizeof tag, "type=\"%s\" Name=\"%s\"", type, name);
-    found = strstr(text, tag);
-    offset = found ? strstr(found, "offset=\"") : NULL;
-    *bytes = 0;
-    if (!offset) return NULL;
-    start += strtoul(offset + 8, NULL, 10);
-    if (start + 8 > n) return NULL;
-    memcpy(bytes, file + start, 8);
-    return start + 8 + *bytes <= n ? file + start + 8 : NULL;
-}
-
 /* Each point is a cell of its own: cell i holds point i, ends at i + 1, is of VTK's type 1. Returns how many do not. */
 static int cells_differ(const unsigned char *file, size_t n)
 {
@@ -870,8 +850,15 @@ static void test_checkpoint(void)
     CHECK_EQUAL("another real type", mpm_io_checkpoint_read(damaged, text, in, 3, &f), MPM_ERR_VERSION);
     free(file);
     in[0].room = sizeof a - 1;
+    in[0].bytes = 7;
     CHECK_EQUAL("too little room", mpm_io_checkpoint_read(path, text, in, 3, &f), MPM_ERR_FILE);
     CHECK_TRUE("fault says so", strcmp(f.field, "name or size of blob differs") == 0 && f.index == 0);
+    CHECK_EQUAL("... how much is stored can be asked for", mpm_io_checkpoint_sizes(path, text, in, 3, &f), MPM_OK);
+    CHECK_EQUAL("... it is", (long)in[0].bytes, (long)sizeof a);
+    CHECK_EQUAL("... of a damaged file it cannot", mpm_io_checkpoint_sizes(damaged, text, in, 3, &f), MPM_ERR_VERSION);
+    in[1].bytes = 2;
+    CHECK_EQUAL("... nor where a fixed size differs", mpm_io_checkpoint_sizes(path, text, in, 3, &f), MPM_ERR_FILE);
+    in[1].bytes = sizeof steps_back;
     in[0] = mpm_blob_of("a", back, sizeof back);
     CHECK_EQUAL("another size", mpm_io_checkpoint_read(path, text, in, 3, &f), MPM_ERR_FILE);
     CHECK_EQUAL("no such file", mpm_io_checkpoint_read(FOLDER "/none", text, in, 3, &f), MPM_ERR_FILE);

@@ -78,6 +78,8 @@ static void surfaces(void)
     refused("--contact surface --geometry axisymmetric --bond interface --adhesion-reach 0", "0");
     refused("--contact faces", "faces");
     refused("--surface-damping -1", "-1");
+    refused("--checkpoint -1", "checkpoint -1");
+    refused("--stop-after -3", "stop-after -3");
 }
 
 /* The staged return books what it takes from the motion, as the consistent one does. */
@@ -137,6 +139,55 @@ static void metals(void)
                number_in(hot, "crater_depth_um") < number_in(al, "crater_depth_um"));
     al = coarse("strain", "--bond strain --eps-c 0.5 --bond-average weighted --shell 2 --model ptw");
     CHECK_TRUE("the strain bond grows", number_in(al, "abp") > 0);
+}
+
+/* Whether two files hold the same bytes, up to where a summary tells of the run's speed. */
+static int same_file(const char *folder, const char *other, const char *name)
+{
+    char path[2][120];
+    size_t n[2];
+    unsigned char *file[2];
+    const char *end;
+    int k, good;
+    snprintf(path[0], sizeof path[0], "build/tests/%s/%s", folder, name);
+    snprintf(path[1], sizeof path[1], "build/tests/%s/%s", other, name);
+    for (k = 0; k < 2; k++) file[k] = slurp(path[k], &n[k]);
+    end = file[0] ? strstr((char *)file[0], "\"cpu_seconds\"") : NULL;
+    if (end) n[0] = n[1] = (size_t)(end - (char *)file[0]);
+    good = file[0] && file[1] && n[0] > 0 && n[0] == n[1] && !memcmp(file[0], file[1], n[0]);
+    for (k = 0; k < 2; k++) free(file[k]);
+    return good;
+}
+
+/* A run that was stopped and goes on leaves the files of one that was not: at nodes, on surfaces in rings and in three
+   dimensions. */
+static void restarts(void)
+{
+    static const char *const how[] = {"--spacing 0.75 --time 2", "--method surface --cell 1.4 --spacing 0.7 --time 12 "
+                                      "--adhesion-critical 100",
+                                      "--method surface --geometry 3d --cell 2 --spacing 1 --time 6 --margin 0.5 "
+                                      "--substrate-diameter 24 --substrate-height 8 --adhesion-critical 100"};
+    static const char *const file[] = {"summary.json", "impact.pvd", "points_0001.vtu", "points_0002.vtu",
+                                       "surface.pvd", "surface_0002.vtu"};
+    char line[400];
+    int k, i;
+    for (k = 0; k < 3; k++) {
+        CHECK_EQUAL("an empty folder", system("rm -rf build/tests/whole build/tests/parts"), 0);
+        snprintf(line, sizeof line, "%s --frames 3 --out build/tests/whole", how[k]);
+        CHECK_EQUAL(how[k], run(line), 0);
+        snprintf(line, sizeof line, "%s --frames 3 --stop-after 47 --checkpoint 1e-3 --out build/tests/parts", how[k]);
+        CHECK_TRUE("... stopped", run(line) != 0 && strstr(text_of("build/tests/impact.out"), "add --resume"));
+        snprintf(line, sizeof line, "%s --frames 3 --velocity 811 --resume --out build/tests/parts", how[k]);
+        CHECK_TRUE("... goes on with its own options alone", run(line) != 0);
+        CHECK_TRUE("... which it says", strstr(text_of("build/tests/impact.err"), "velocity 811") != NULL);
+        snprintf(line, sizeof line, "%s --frames 3 --resume --out build/tests/parts", how[k]);
+        CHECK_EQUAL("... goes on", run(line), 0);
+        for (i = 0; i < (k ? 6 : 4); i++) CHECK_TRUE(file[i], same_file("whole", "parts", file[i]));
+        CHECK_TRUE("... after which the checkpoint goes", !exists("build/tests/parts/checkpoint.bin"));
+    }
+    CHECK_TRUE("... of a bond", number_in("build/tests/parts/summary.json", "bonded_area_um2") > 0);
+    CHECK_TRUE("nothing to go on from", run("--resume --out build/tests/parts") != 0);
+    CHECK_TRUE("... is said", strstr(text_of("build/tests/impact.err"), "checkpoint.bin") != NULL);
 }
 
 /* Frames: points for ParaView with all fields, their series, pictures. */
@@ -223,6 +274,7 @@ static void programs(void)
     CHECK_NEAR("energy unaccounted", number_in(q, "energy_unaccounted"), 0, 0.03);
     frames();
     surfaces();
+    restarts();
     staged();
     oblique();
     metals();

@@ -104,8 +104,31 @@ static void near(void)
     snprintf(command, sizeof command, "%s --bond none --offsets 1 --low 700 --high 900", search);
     CHECK_EQUAL("nothing bonds", run(command), 0);
     CHECK_EQUAL("... up to the range's end", number_in(summary, "offsets_without_bond"), 1);
-    refused("calibrate --method surface", "--method");
     refused("impact --method guess", "guess");
+}
+
+/* The sweep over the two parameters of the bond on surfaces: its corners are of both classes. */
+static void calibration_on_surfaces(void)
+{
+    const char *sweep = "calibrate --method surface --cell 2 --spacing 1 --columns 5 --rows 5 --gc-low 300 --gc-high "
+                        "4000 --quiet --out " FOLDER "/surfaces";
+    char command[300];
+    snprintf(command, sizeof command, "%s --list", sweep);
+    CHECK_EQUAL("a sweep of the bond on surfaces", run(command), 0);
+    CHECK_TRUE("... names its parameters", strstr(output, "\n4  14 um at 810 m/s, G_c 4000, W0 10\n") != NULL);
+    snprintf(command, sizeof command, "%s --task 20", sweep);
+    CHECK_EQUAL("... the strongest bond", run(command), 0);
+    snprintf(command, sizeof command, "%s --task 4", sweep);
+    CHECK_EQUAL("... the weakest", run(command), 0);
+    snprintf(command, sizeof command, "%s --collect", sweep);
+    CHECK_EQUAL("... collected", run(command), 0);
+    contents(FOLDER "/surfaces/tasks.csv", output, sizeof output);
+    CHECK_TRUE("... are told", strstr(output, "adhesion_critical_J_m2,adhesion_J_m2") && lines_of(output) == 4);
+    CHECK_TRUE("... the strongest holds", strstr(output, "\n20,14,810,300,150,") && strstr(output, ",1\n") != NULL);
+    CHECK_TRUE("... the weakest does not", strstr(output, "\n4,14,810,4000,10,") && strstr(output, ",0\n") != NULL);
+    refused("calibrate --method surface --bond none", "--bond interface");
+    refused("calibrate --method surface --adhesion-low 0", "adhesion-low 0");
+    refused("calibrate --method surface --gdot-low 1", "--gdot-low");
 }
 
 static void calibration(void)
@@ -182,6 +205,19 @@ static void particles(void)
     CHECK_EQUAL("the same seed", run(command), 0);
     contents(FOLDER "/many/particles.csv", output, sizeof output);
     CHECK_TRUE("... gives the same report", !strcmp(text, output));
+    snprintf(command, sizeof command, "two_particles --method surface %s/rings --geometry axisymmetric --time 16 "
+             "--height 21.2 --adhesion-critical 100", grid);
+    CHECK_EQUAL("two particles on surfaces, one behind the other", run(command), 0);
+    CHECK_TRUE("... the second touched the first, the first the substrate",
+               contents(FOLDER "/rings/pairs.csv", text, sizeof text) && strstr(text, "\n0,1,") &&
+                   strstr(text, "\n0,2,") && !strstr(text, "\n1,2,"));
+    CHECK_NEAR("... energy", number_in(FOLDER "/rings/summary.json", "energy_unaccounted"), 0, 0.01);
+    CHECK_TRUE("... their surfaces in ParaView", contents(FOLDER "/rings/surface_0000.vtu", text, sizeof text) > 1000);
+    CHECK_TRUE("... a share of what touched is bonded", number_in(FOLDER "/rings/summary.json", "pbcp_percent") > 1);
+    snprintf(command, sizeof command, "many_particles --method surface %s/few --count 2 --spread 20 --time 0.4", grid);
+    CHECK_EQUAL("some on surfaces", run(command), 0);
+    CHECK_EQUAL("... counted", number_in(FOLDER "/few/summary.json", "particles"), 2);
+    refused("two_particles --method surface --bond energy", "--bond interface");
     refused("two_particles --height 10", "overlap");
     refused("two_particles --geometry axisymmetric --offset 2", "3d");
     refused("two_particles --offset inf", "inf");
@@ -300,6 +336,7 @@ int main(void)
     lengths();
     critical();
     near();
+    calibration_on_surfaces();
     calibration();
     particles();
     reproduction();

@@ -8,9 +8,15 @@
 #define FOLDER "build/tests/particles"
 
 /* Two particles on a grid so coarse that the scene takes a second; three frames. */
-static void scene(particles_case *q, const char *folder)
+static void scene(particles_case *q, const char *method, const char *folder)
 {
+    char option_name[] = "--method", word[16] = "", *argv[3];
+    argv[0] = option_name;
+    argv[1] = option_name;
+    argv[2] = word;
+    snprintf(word, sizeof word, "%s", method);
     *q = particles_default("half", folder);
+    particles_method(q, 3, argv);
     q->base.cell = 2;
     q->base.spacing = 1;
     q->base.substrate_diameter = 24;
@@ -23,6 +29,9 @@ static void scene(particles_case *q, const char *folder)
     q->center[1][2] = 22;
     q->out.frames = 3;
     q->out.quiet = 1;
+    q->base.adhesion_critical = 100;
+    q->base.dt_factor = strcmp(method, "surface") ? 0.2 : 0.4;
+    particles_complete(q);
 }
 
 /* Runs it, at most so many steps (0: all). */
@@ -57,35 +66,88 @@ static int same(const char *a, const char *b, const char *name)
 }
 
 /* Stopped, left for dead behind its second frame, gone on with from the first stop, beside one run. */
-static void interrupted(const char *normal, int touch)
+static void interrupted(const char *method, const char *normal, int touch)
 {
     static const char *const file[] = {"particles.csv", "pairs.csv", "summary.json", "particles.pvd",
-                                       "points_0000.vtu", "points_0001.vtu", "points_0002.vtu", "frame_0002.png"};
+                                       "points_0000.vtu", "points_0001.vtu", "points_0002.vtu", "frame_0002.png",
+                                       "surface.pvd", "surface_0002.vtu"};
+    const int surface = !strcmp(method, "surface"), files = surface ? 10 : 8;
+    const long some = surface ? 50 : 100; /* of five times as many steps */
     static particles_case whole, parts;
     int k;
-    scene(&whole, FOLDER "/whole");
-    scene(&parts, FOLDER "/parts");
+    scene(&whole, method, FOLDER "/whole");
+    scene(&parts, method, FOLDER "/parts");
     whole.base.normal = parts.base.normal = normal;
     whole.base.touch = parts.base.touch = touch;
     CHECK_EQUAL(normal, run(&whole, 0), 0);
-    CHECK_EQUAL("stopped after 100 steps", run(&parts, 100), 3);
+    CHECK_EQUAL("stopped", run(&parts, some), 3);
     CHECK_TRUE("... with a checkpoint, without a summary",
                exists(FOLDER "/parts/checkpoint.bin") && !exists(FOLDER "/parts/summary.json"));
     CHECK_TRUE("... which is not taken for a finished scene", !particles_finished(&parts));
-    scene(&parts, FOLDER "/parts");
+    scene(&parts, method, FOLDER "/parts");
     parts.base.normal = normal;
     parts.base.touch = touch;
     system("cp " FOLDER "/parts/checkpoint.bin " FOLDER "/first.bin");
-    CHECK_EQUAL("stopped again, behind the second frame", run(&parts, 200), 3);
+    CHECK_EQUAL("stopped again, behind the second frame", run(&parts, 2 * some), 3);
     CHECK_TRUE("... which is there", exists(FOLDER "/parts/points_0001.vtu"));
     system("cp " FOLDER "/first.bin " FOLDER "/parts/checkpoint.bin");
     CHECK_EQUAL("to the end", run(&parts, 0), 0);
     CHECK_TRUE("... at which the checkpoint goes", !exists(FOLDER "/parts/checkpoint.bin"));
-    for (k = 0; k < 8; k++) {
+    for (k = 0; k < files; k++) {
         char line[80];
         snprintf(line, sizeof line, "the same bits: %s", file[k]);
         CHECK_TRUE(line, same(FOLDER "/whole", FOLDER "/parts", file[k]));
     }
+}
+
+/* The scene on surfaces, of which the particles are added in one order or the other. */
+static void surface_scene(int order, double *v, double *area)
+{
+    static particles_case q;
+    char message[300];
+    particles_meeting m[3];
+    impact s;
+    double x[3];
+    int32_t k;
+    scene(&q, "surface", FOLDER "/none");
+    q.base.dt_factor = 0.5;
+    q.center[1][0] = 2;
+    q.center[1][2] = 21;
+    memcpy(x, q.center[0], sizeof x);
+    if (order) {
+        memcpy(q.center[0], q.center[1], sizeof x);
+        memcpy(q.center[1], x, sizeof x);
+    }
+    CHECK_EQUAL("three bodies with surfaces", particles_begin(&s, &q, message, sizeof message), 1);
+    CHECK_EQUAL("... each its own", s.surfaces.surfaces, 3);
+    while (s.world.steps < s.steps)
+        if (impact_step(&s) < 0) break;
+    CHECK_EQUAL("... to the end", s.world.steps, s.steps);
+    for (k = 0; k < 3; k++) {
+        const int32_t body = order && k < 2 ? 1 - k : k;
+        v[k] = mpm_body_totals(&s.world, body).momentum[2] / mpm_body_totals(&s.world, body).mass;
+    }
+    m[0] = particles_meet(&s, 0, 1); /* of the two, of the lower and the substrate, of the upper and that */
+    m[1] = particles_meet(&s, order, 2);
+    m[2] = particles_meet(&s, 1 - order, 2);
+    for (k = 0; k < 3; k++) area[k] = m[k].touched;
+    CHECK_TRUE("... a bond is of the pair that met", m[1].area > 0 && m[1].linked && !m[2].linked);
+    impact_end(&s);
+}
+
+/* Contact and bond of any pair, however they are numbered. */
+static void surfaces(void)
+{
+    double v[2][3], area[2][3];
+    int k;
+    for (k = 0; k < 2; k++) surface_scene(k, v[k], area[k]);
+    printf("# on surfaces: %.3f, %.3f, %.3f m/s, areas %.2f, %.2f, %.2f um2\n", v[0][0], v[0][1], v[0][2], area[0][0],
+           area[0][1], area[0][2]);
+    CHECK_TRUE("the particles meet", area[0][0] > 1);
+    CHECK_TRUE("... the lower one the substrate", area[0][1] > 1);
+    CHECK_NEAR("... and not the upper", area[0][2], 0, 0);
+    for (k = 0; k < 3; k++) CHECK_NEAR("... however they are numbered [m/s]", v[1][k], v[0][k], 1e8 * MPM_EPSILON);
+    for (k = 0; k < 2; k++) CHECK_RELATIVE("... areas", area[1][k], area[0][k], 1e6 * (double)MPM_EPSILON);
 }
 
 static void refused(const char *command, const char *said)
@@ -206,7 +268,7 @@ static void damaged(const particles_case *q)
 static void finished(void)
 {
     static particles_case q;
-    scene(&q, FOLDER "/whole");
+    scene(&q, "thesis", FOLDER "/whole");
     q.base.normal = "logistic";
     q.base.touch = 1;
     CHECK_TRUE("a finished scene is known", particles_finished(&q));
@@ -345,7 +407,7 @@ static void partners(void)
         memcpy(&value, end - 4 * k, 4);
         if (value >= -1 && value <= 2) found[value + 1]++;
     }
-    for (row = strstr(row, "held_nodes\n"); row && (row = strchr(row, '\n')) != NULL && row[1]; row++) {
+    for (row = strstr(row, "bonded_um2\n"); row && (row = strchr(row, '\n')) != NULL && row[1]; row++) {
         long contacted = 0;
         if (sscanf(row, "\n%*d,%*d,%*f,%ld", &contacted) == 1) counted += contacted;
     }
@@ -372,9 +434,11 @@ int main(void)
 {
     evenly();
     CHECK_EQUAL("an empty folder", system("rm -rf " FOLDER " && mkdir -p " FOLDER), 0);
-    interrupted("ranked", 0);
+    interrupted("thesis", "ranked", 0);
     partners();
-    interrupted("logistic", 1);
+    interrupted("surface", "ranked", 0);
+    surfaces();
+    interrupted("thesis", "logistic", 1);
     finished();
     repeated();
     places("sphere", 1, 0);

@@ -3,6 +3,7 @@
 #define FILES_H
 
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,6 +45,28 @@ static inline void write_file(const char *path, const void *data, size_t n)
     if (!f) return;
     if (n) fwrite(data, 1, n, f);
     fclose(f);
+}
+
+/* ---- ParaView ---------------------------------------------------------------------------------- */
+
+/* The appended array of a given name in a .vtu of n bytes: its bytes and their number, as the tag's offset says. */
+static inline const unsigned char *vtu_array(const unsigned char *file, size_t n, const char *name, const char *type,
+                                             uint64_t *bytes)
+{
+    char tag[96];
+    const char *text = (const char *)file, *found, *offset;
+    size_t start = 0;
+    while (start + 22 < n && memcmp(text + start, "encoding=\"raw\">\n_", 17) != 0) start++;
+    start += 17;
+    snprintf(tag, sizeof tag, "type=\"%s\" Name=\"%s\"", type, name);
+    found = strstr(text, tag);
+    offset = found ? strstr(found, "offset=\"") : NULL;
+    *bytes = 0;
+    if (!offset) return NULL;
+    start += strtoul(offset + 8, NULL, 10);
+    if (start + 8 > n) return NULL;
+    memcpy(bytes, file + start, 8);
+    return start + 8 + *bytes <= n ? file + start + 8 : NULL;
 }
 
 /* ---- text ------------------------------------------------------------------------------------ */

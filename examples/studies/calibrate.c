@@ -10,8 +10,9 @@
        build/calibrate --collect                          fit, cross and draw what is done
        build/calibrate --list | cut -d' ' -f1 | xargs -P 8 -n 1 build/calibrate --quiet --task
 
-   Without --plain the list grows with what is known: repeat the last line until it is empty. A task
-   writes one file, whole or not at all, and is never repeated. SPDX-License-Identifier: MIT */
+   With --method surface the pairs are (G_c, W0) of the interface's bond, at 28 cells in a diameter: hours. Without
+   --plain the list grows with what is known: repeat the last line until it is empty. A task writes one
+   file, whole or not at all, and is never repeated. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "calibration.h"
 
@@ -28,8 +29,9 @@ static int list(const calibration *q, const study *s)
         calibration_look(q, s, size, &map);
         for (k = 0; k < calibration_nodes(q); k++)
             if (map.wanted[k] && map.bonds[k] < 0)
-                printf("%lld  %g um at %g m/s, G_c %.6g, Gdot_c %.6g\n", (long long)(size * calibration_nodes(q) + k),
-                       q->diameter[size], q->velocity[size], calibration_gc(q, k), calibration_gdot(q, k));
+                printf("%lld  %g um at %g m/s, G_c %.6g, %s %.6g\n", (long long)(size * calibration_nodes(q) + k),
+                       q->diameter[size], q->velocity[size], calibration_gc(q, k), calibration_second(q),
+                       calibration_gdot(q, k));
     }
     return 0;
 }
@@ -42,8 +44,10 @@ static int write_tasks(const calibration *q, const study *s, mpm_fault *fault)
     int size;
     int64_t k;
     mpm_io_csv_begin(&t, file_in(s->folder, "tasks.csv", path, sizeof path),
-                     "task,diameter_um,velocity_m_s,gc_J_m2,gdot_J_m2_us,pbcp_percent,restitution_ratio,v_late_m_s,"
-                     "bonds", program, fault);
+                     calibration_surface(q) ? "task,diameter_um,velocity_m_s,adhesion_critical_J_m2,adhesion_J_m2,"
+                                              "pbcp_percent,restitution_ratio,v_late_m_s,bonds"
+                                            : "task,diameter_um,velocity_m_s,gc_J_m2,gdot_J_m2_us,pbcp_percent,"
+                                              "restitution_ratio,v_late_m_s,bonds", program, fault);
     for (size = 0; size < 2; size++)
         for (k = 0; k < calibration_nodes(q); k++) {
             const impact_case c = calibration_case(q, size, k);
@@ -51,8 +55,8 @@ static int write_tasks(const calibration *q, const study *s, mpm_fault *fault)
             mpm_io_csv_integer(&t, size * calibration_nodes(q) + k);
             mpm_io_csv_real(&t, (mpm_real)q->diameter[size]);
             mpm_io_csv_real(&t, (mpm_real)q->velocity[size]);
-            mpm_io_csv_real(&t, (mpm_real)c.gc);
-            mpm_io_csv_real(&t, (mpm_real)c.gdot);
+            mpm_io_csv_real(&t, (mpm_real)calibration_gc(q, k));
+            mpm_io_csv_real(&t, (mpm_real)calibration_gdot(q, k));
             mpm_io_csv_real(&t, (mpm_real)value[STUDY_PBCP]);
             mpm_io_csv_real(&t, (mpm_real)calibration_ratio(q, size, value));
             mpm_io_csv_real(&t, (mpm_real)value[STUDY_V_LATE]);
@@ -96,11 +100,12 @@ static int write_summary(const calibration *q, const calibration_result *r, cons
     for (k = 0; k < r->points; k++) {
         snprintf(name, sizeof name, "crossing_%d_gc_J_m2", k + 1);
         mpm_io_json_number(&j, name, r->point[k][0]);
-        snprintf(name, sizeof name, "crossing_%d_gdot_J_m2_us", k + 1);
+        snprintf(name, sizeof name, "crossing_%d_%s", k + 1, calibration_surface(q) ? "adhesion_J_m2" : "gdot_J_m2_us");
         mpm_io_json_number(&j, name, r->point[k][1]);
     }
     for (k = 0; k < 2; k++) write_side(&j, q, k, &r->side[k]);
-    mpm_io_json_string(&j, "fit_parameters", strcmp(q->scale, "log") ? "G_c, Gdot_c" : "log10 G_c, log10 Gdot_c");
+    snprintf(name, sizeof name, strcmp(q->scale, "log") ? "G_c, %s" : "log10 G_c, log10 %s", calibration_second(q));
+    mpm_io_json_string(&j, "fit_parameters", name);
     options_json(&j, o, n);
     return mpm_io_json_end(&j, fault) >= 0;
 }
@@ -118,7 +123,8 @@ static void print_result(const calibration *q, const calibration_result *r, cons
         if (side->status > 0) printf("    the fit: %s\n", side->why);
     }
     for (k = 0; k < r->points; k++)
-        printf("  the boundaries cross at G_c %.6g J/m2, Gdot_c %.4g J/m2/us\n", r->point[k][0], r->point[k][1]);
+        printf("  the boundaries cross at G_c %.6g J/m2, %s %.4g %s\n", r->point[k][0], calibration_second(q),
+               r->point[k][1], calibration_unit(q));
     if (r->same) printf("  the two sizes have the same classes: one boundary\n");
     else if (!r->points && r->side[0].status >= 0 && r->side[1].status >= 0)
         printf("  the boundaries do not cross in this range\n");
@@ -155,19 +161,20 @@ typedef struct errand {
 
 static int options(calibration *q, study *s, errand *e, option *o)
 {
+    const int surface = calibration_surface(q);
     int n = study_case_options(&q->base, o);
-    option_drop(o, &n, "method"); /* of source A's bond */
     option_drop(o, &n, "diameter"); /* what the sweep sets */
     option_drop(o, &n, "velocity");
-    option_drop(o, &n, "gc");
-    option_drop(o, &n, "gdot");
+    option_drop(o, &n, surface ? "adhesion-critical" : "gc");
+    option_drop(o, &n, surface ? "adhesion" : "gdot");
     option_add_word(o, &n, "substrate", &q->substrate, STUDY_SUBSTRATES, "source A's sizes, or 5 x 2.5 diameters");
     option_add(o, &n, "gc-low", OPTION_REAL, &q->gc[0], "range of G_c, J/m2");
     option_add(o, &n, "gc-high", OPTION_REAL, &q->gc[1], "");
-    option_add(o, &n, "gdot-low", OPTION_REAL, &q->gdot[0], "range of Gdot_c, J/m2/us");
-    option_add(o, &n, "gdot-high", OPTION_REAL, &q->gdot[1], "");
+    option_add(o, &n, surface ? "adhesion-low" : "gdot-low", OPTION_REAL, &q->gdot[0],
+               surface ? "range of W0, J/m2" : "range of Gdot_c, J/m2/us");
+    option_add(o, &n, surface ? "adhesion-high" : "gdot-high", OPTION_REAL, &q->gdot[1], "");
     option_add(o, &n, "columns", OPTION_INTEGER, &q->columns, "values of G_c");
-    option_add(o, &n, "rows", OPTION_INTEGER, &q->rows, "values of Gdot_c");
+    option_add(o, &n, "rows", OPTION_INTEGER, &q->rows, surface ? "values of W0" : "values of Gdot_c");
     option_add_word(o, &n, "scale", &q->scale, CALIBRATION_SCALES, "the steps, and what the fit sees");
     option_add(o, &n, "plain", OPTION_FLAG, &q->plain, "run every pair, not only where the class changes");
     option_add(o, &n, "diameter-1", OPTION_REAL, &q->diameter[0], "um");
@@ -192,6 +199,7 @@ static int options(calibration *q, study *s, errand *e, option *o)
 /* The sweep without its sizes' cases. */
 static int check_sweep(const calibration *q, char *m, size_t n)
 {
+    const int surface = calibration_surface(q);
     int k;
     for (k = 0; k < 2; k++)
         if (!case_wants(q->pbcp[k] >= 0, k ? "pbcp-2" : "pbcp-1", q->pbcp[k], "must be >= 0 %", m, n) ||
@@ -201,9 +209,9 @@ static int check_sweep(const calibration *q, char *m, size_t n)
             return 0;
     return case_wants(q->gc[0] > 0, "gc-low", q->gc[0], "must be > 0 J/m2", m, n) &&
            case_wants(q->gc[1] > q->gc[0] && q->gc[1] < 1e30, "gc-high", q->gc[1], "must be over --gc-low", m, n) &&
-           case_wants(q->gdot[0] > 0, "gdot-low", q->gdot[0], "must be > 0 J/m2/us", m, n) &&
-           case_wants(q->gdot[1] > q->gdot[0] && q->gdot[1] < 1e30, "gdot-high", q->gdot[1], "must be over --gdot-low",
-                      m, n) &&
+           case_wants(q->gdot[0] > 0, surface ? "adhesion-low" : "gdot-low", q->gdot[0], "must be > 0", m, n) &&
+           case_wants(q->gdot[1] > q->gdot[0] && q->gdot[1] < 1e30, surface ? "adhesion-high" : "gdot-high", q->gdot[1],
+                      "must be over the range's low end", m, n) &&
            case_wants(q->columns >= 5, "columns", (double)q->columns, "must be 5 or more", m, n) &&
            case_wants(q->rows >= 5, "rows", (double)q->rows, "must be 5 or more", m, n) &&
            case_wants(q->columns < CALIBRATION_NODES && q->rows < CALIBRATION_NODES &&
@@ -218,8 +226,9 @@ static int check(const calibration *q, const errand *e, char *m, size_t n)
     impact_case c;
     int k;
     if (!check_sweep(q, m, n)) return 0;
-    if (strcmp(q->base.bond, "energy")) {
-        snprintf(m, n, "--bond %s: the sweep is over G_c and Gdot_c, which only --bond energy has", q->base.bond);
+    if (strcmp(q->base.bond, calibration_surface(q) ? "interface" : "energy")) {
+        snprintf(m, n, "--bond %s: the sweep is over G_c and %s, which only --bond %s has", q->base.bond,
+                 calibration_second(q), calibration_surface(q) ? "interface" : "energy");
         return 0;
     }
     for (k = 0; k < 2; k++) { /* behind the others: it divides by the columns */
@@ -251,7 +260,8 @@ static int run(const calibration *q, study *s, const errand *e, char *message, s
 
 static int carry_out(int argc, char **argv)
 {
-    calibration q = calibration_default();
+    const int surface = !strcmp(impact_method(argc, argv, "thesis"), "surface");
+    calibration q = surface ? calibration_of_surfaces() : calibration_default();
     study s = study_of("build/calibrate-out");
     errand e = {0, 0, -1};
     option o[IMPACT_OPTIONS];

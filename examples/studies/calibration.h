@@ -1,5 +1,6 @@
-/* calibration.h - which pairs (G_c, Gdot_c) bond two particle sizes at their critical velocities: a sweep over
-   kept runs, the boundary of each size and where the two cross (source A, 4.1.2 and 5.1).
+/* calibration.h - which pairs (G_c, Gdot_c), or (G_c, W0) of the bond of surfaces, bond two particle sizes at their
+   critical velocities: a sweep over kept runs, the boundary of each size and where the two cross (source A, 4.1.2 and
+   5.1; docs/prediction.md).
    SPDX-License-Identifier: MIT */
 #ifndef CALIBRATION_H
 #define CALIBRATION_H
@@ -14,7 +15,7 @@
 typedef struct calibration {
     impact_case base;               /* what both sizes share */
     const char *substrate, *scale, *rule; /* words of STUDY_SUBSTRATES, CALIBRATION_SCALES, CRITICAL_RULES */
-    double gc[2], gdot[2];          /* ranges, J/m2, J/m2/us */
+    double gc[2], gdot[2];          /* ranges, J/m2, J/m2/us; with method surface of G_c and W0, J/m2 */
     int64_t columns, rows;          /* pairs along G_c, Gdot_c */
     int plain;                      /* 1: every pair; 0: only where the class changes */
     double diameter[2], velocity[2]; /* um, m/s */
@@ -68,6 +69,28 @@ static inline calibration calibration_default(void)
     return q;
 }
 
+/* The same for contact and bond on surfaces: what stays is bonded. */
+static inline calibration calibration_of_surfaces(void)
+{
+    calibration q = calibration_default();
+    q.base = impact_case_surface();
+    q.rule = "stays";
+    q.gc[0] = 500;
+    q.gc[1] = 5000;
+    q.gdot[0] = 10;
+    q.gdot[1] = 150;
+    q.columns = 13;
+    q.rows = 9;
+    return q;
+}
+
+static inline int calibration_surface(const calibration *q) { return !strcmp(q->base.method, "surface"); }
+
+/* The name of the second parameter. */
+static inline const char *calibration_second(const calibration *q) { return calibration_surface(q) ? "W0" : "Gdot_c"; }
+
+static inline const char *calibration_unit(const calibration *q) { return calibration_surface(q) ? "J/m2" : "J/m2/us"; }
+
 static inline int64_t calibration_nodes(const calibration *q) { return q->columns * q->rows; }
 
 /* Node `number` of n between low and high. */
@@ -103,8 +126,8 @@ static inline impact_case calibration_case(const calibration *q, int size, int64
     impact_case c = q->base;
     c.diameter = q->diameter[size];
     c.velocity = q->velocity[size];
-    c.gc = calibration_gc(q, node);
-    c.gdot = calibration_gdot(q, node);
+    *(calibration_surface(q) ? &c.adhesion_critical : &c.gc) = calibration_gc(q, node);
+    *(calibration_surface(q) ? &c.adhesion : &c.gdot) = calibration_gdot(q, node);
     study_complete(&c, q->substrate);
     return c;
 }
@@ -304,8 +327,9 @@ static inline int calibration_draw(const calibration *q, const calibration_resul
     mpm_real px[4], py[4];
     mpm_draw_curve curve[2][5];
     mpm_draw_plot_desc d[2];
-    char title[2][80];
+    char title[2][80], second[40];
     int size, k, plots = 0;
+    snprintf(second, sizeof second, "%s, %s", calibration_second(q), calibration_unit(q));
     for (k = 0; k < 2; k++) {
         calibration_trace(q, &r->side[k], &line[k]);
         snprintf(line[k].name, sizeof line[k].name, "boundary, %g um", q->diameter[k]);
@@ -323,7 +347,7 @@ static inline int calibration_draw(const calibration *q, const calibration_resul
                                   k == size ? MPM_DRAW_CURVE : MPM_DRAW_DASHED, 2 + k);
         c[4] = plot_curve(r->points > 0 ? "crossing" : NULL, px, py, (size_t)r->points, MPM_DRAW_DOTS, 5);
         snprintf(title[size], sizeof title[size], "%g um at %g m/s", q->diameter[size], q->velocity[size]);
-        d[plots] = plot_of(title[size], "G_c, J/m2", "Gdot_c, J/m2/us", c, 5);
+        d[plots] = plot_of(title[size], "G_c, J/m2", second, c, 5);
         d[plots].log_x = d[plots].log_y = !strcmp(q->scale, "log");
         plots++;
     }

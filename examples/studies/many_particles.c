@@ -17,6 +17,7 @@ static int carry_out(int argc, char **argv)
     q = particles_default("full", "build/many_particles-out");
     q.count = 10;
     q.base.substrate_diameter = q.base.time = 0;
+    particles_method(&q, argc, argv);
     n = particles_options(&q, o);
     option_add(o, &n, "count", OPTION_INTEGER, &q.count, "particles, 1 .. 500");
     option_add(o, &n, "spread", OPTION_REAL, &spread, "width of the region of their centres, um");

@@ -4,10 +4,10 @@
 #ifndef PARTICLES_CASE_H
 #define PARTICLES_CASE_H
 
-#include "output.h"
+#include "impact_restart.h"
 #include "study.h"
 
-#define PARTICLES 500
+#define PARTICLES (IMPACT_BODIES - 1) /* the last body is the substrate */
 
 typedef struct particles_case {
     impact_case base;            /* of every particle; its gap is not used */
@@ -30,6 +30,29 @@ static inline particles_case particles_default(const char *symmetry, const char 
     q.out = output_of(folder, "particles", "um", "ns", 1);
     q.out.frames = 4;
     return q;
+}
+
+/* With --method surface on the command line: contact and bond on surfaces, each particle with its own, in three
+   dimensions, of the aluminium that the bond is calibrated for. */
+static inline void particles_method(particles_case *q, int argc, char **argv)
+{
+    const impact_case usual = q->base;
+    if (strcmp(impact_method(argc, argv, usual.method), "surface")) return;
+    q->base = impact_case_surface();
+    q->base.symmetry = usual.symmetry;
+    q->base.geometry = usual.geometry;
+    q->base.substrate_diameter = usual.substrate_diameter;
+    q->base.substrate_height = usual.substrate_height;
+    q->base.time = usual.time;
+}
+
+/* ... and what is 0 then: cells of d/14 with two points along an edge, half as fine as for one particle. */
+static inline void particles_complete(particles_case *q)
+{
+    const int surface = !strcmp(q->base.method, "surface");
+    if (surface && !(fabs(q->base.cell) > 0)) q->base.cell = q->base.diameter / 14;
+    if (surface && !(fabs(q->base.spacing) > 0)) q->base.spacing = q->base.cell / 2;
+    impact_complete(&q->base);
 }
 
 /* The next number in [0, 1): splitmix64. */
@@ -89,13 +112,15 @@ static inline int particles_scatter(particles_case *q, double spread, double hei
 static inline int particles_place(particles_case *q, double spread, double height, int64_t seed, char *message,
                                   size_t n)
 {
-    const double apart = particles_extent(q) + q->base.cell, tilt = q->base.angle * (double)MPM_PI / 180;
-    const double down = q->base.velocity * cos(tilt), drift = tan(tilt);
-    double least = HUGE_VAL;
+    const double tilt = q->base.angle * (double)MPM_PI / 180, drift = tan(tilt);
+    const double down = q->base.velocity * cos(tilt);
+    double least = HUGE_VAL, apart;
     int64_t k;
     if (!(fabs(q->base.substrate_diameter) > 0)) q->base.substrate_diameter = spread + 2 * impact_half_width(&q->base);
     if (!(fabs(q->base.time) > 0)) q->base.time = 1e3 * height / down + 40;
+    particles_complete(q);
     if (!impact_check(&q->base, message, n)) return 0;
+    apart = particles_extent(q) + q->base.cell;
     if (!particles_scatter(q, spread, height, apart, drift, seed)) {
         snprintf(message, n, "--count %lld: no room for so many at %g um (particle and cell) from centre to centre; "
                  "larger --spread or --height, or smaller --cell", (long long)q->count, apart);
@@ -168,10 +193,18 @@ typedef enum particle_fate {
 static const char *const particle_fate_text[PARTICLE_FATES] = {"arriving", "bonded", "resting", "rebounded",
                                                                "sheared off"};
 
+/* How two bodies meet: by points and nodes, or by their surfaces. */
+typedef struct particles_meeting {
+    int linked;             /* a bond that is not spent */
+    int64_t contacted, bonded; /* points */
+    int64_t nodes, held;    /* bonded ones; those of them that the last step held */
+    double pbcp;            /* bonded share of what touched, by area, % */
+    double touched, area;   /* that touched and that bonded, in the model, um2 */
+} particles_meeting;
+
 typedef struct particle_report {
     particle_fate fate;
-    mpm_bond_measure bond;  /* of its own points */
-    int64_t nodes;             /* bonded nodes to any other body */
+    particles_meeting met;  /* with any other body */
     double v_z, v_along;    /* of its points up to 60 m/s, from the substrate's mean: up, along the face [m/s] */
     double ejected;         /* share of its mass faster than 60 m/s; 0 on its way down */
     double height;          /* of its centre of mass, um */
@@ -205,8 +238,35 @@ static inline void particles_velocity(const mpm_world *w, int32_t body, double v
     if (w->desc.side[0] == MPM_SIDE_SYMMETRY) v[0] = 0;
 }
 
-/* Which bodies a chain of bonded nodes leads to from the substrate. */
-static inline void particles_linked(const mpm_world *w, int32_t substrate, int *linked)
+/* Of a and b, or (-1) any other body. */
+static inline particles_meeting particles_meet(const impact *s, int32_t a, int32_t b)
+{
+    const mpm_interface f = mpm_interface_of(&s->world, a, b);
+    mpm_bond_measure m = mpm_bond_measure_body(&s->world, a);
+    particles_meeting r;
+    memset(&r, 0, sizeof r);
+    if (s->surfaces.surfaces > 0) {
+        const mpm_meeting met = mpm_surface_meets(&s->surfaces, &s->world, a, b);
+        r.touched = met.touched > 0 ? met.touched : met.area; /* without adhesion: now */
+        r.area = met.bonded;
+        r.linked = met.bonded > 0;
+        r.pbcp = 100 * case_share(r.area, r.touched);
+        return r;
+    }
+    if (b >= 0) mpm_bond_measure_pair(&s->bond, &s->world, a, b, &m);
+    r.contacted = m.contacted;
+    r.bonded = m.bonded;
+    r.pbcp = m.pbcp;
+    r.touched = m.contacted_area;
+    r.area = m.bonded_area;
+    r.nodes = f.bonded;
+    r.held = f.held;
+    r.linked = f.bonded > 0;
+    return r;
+}
+
+/* Which bodies a chain of bonds leads to from the substrate. */
+static inline void particles_linked(const impact *s, int32_t substrate, int *linked)
 {
     int changed = 1;
     int32_t a, b;
@@ -215,10 +275,10 @@ static inline void particles_linked(const mpm_world *w, int32_t substrate, int *
     while (changed)
         for (changed = 0, a = 0; a < substrate; a++)
             for (b = 0; b <= substrate && !linked[a]; b++)
-                if (b != a && linked[b] && mpm_interface_of(w, a, b).bonded > 0) linked[a] = changed = 1;
+                if (b != a && linked[b] && particles_meet(s, a, b).linked) linked[a] = changed = 1;
 }
 
-/* Bonded: a chain of bonded nodes leads to the substrate and it moves with the substrate to within 5 m/s; resting: so
+/* Bonded: a chain of bonds leads to the substrate and it moves with the substrate to within 5 m/s; resting: so
    slow, without such a chain; rebounded: leaves faster upwards than along the face; sheared off: leaves faster along
    the face; arriving: on its way down. */
 static inline particle_fate particles_fate(double v_z, double v_along, int linked)
@@ -248,12 +308,11 @@ static inline void particles_report(const impact *s, const particles_case *q, pa
     int linked[PARTICLES + 1];
     double still[3], v[3];
     int32_t a;
-    particles_linked(w, substrate, linked);
+    particles_linked(s, substrate, linked);
     particles_velocity(w, substrate, still);
     for (a = 0; a < substrate; a++) {
         particles_velocity(w, a, v);
-        r[a].bond = mpm_bond_measure_body(w, a);
-        r[a].nodes = mpm_interface_of(w, a, -1).bonded;
+        r[a].met = particles_meet(s, a, -1);
         r[a].height = particles_center(w, a);
         r[a].v_z = v[2] - still[2];
         r[a].v_along = hypot(v[0] - still[0], v[1] - still[1]);
@@ -288,7 +347,9 @@ static inline int particles_frame(const impact *s, particles_case *q)
     picture.cut[1].title = "bodies";
     snprintf(picture.title, sizeof picture.title, "%lld x %s, %g um at %g m/s", (long long)q->count,
              q->base.material, q->base.diameter, q->base.velocity);
-    ok = output_frame(&q->out, &s->world, &field, 1, &picture);
+    ok = output_outline(&picture, &s->world, &s->surfaces) && output_surfaces(&q->out, &s->world, &s->surfaces) &&
+         output_frame(&q->out, &s->world, &field, 1, &picture);
+    free(picture.outline);
     free(partner);
     return ok;
 }
@@ -303,18 +364,21 @@ static inline int particles_table(const particles_case *q, const particle_report
     int k;
     mpm_io_csv_begin(&t, file_in(q->out.folder, "particles.csv", path, sizeof path),
                      "particle,x_um,y_um,z_um,fate,pbcp_percent,contacted_points,bonded_points,bonded_nodes,"
-                     "v_z_m_s,v_along_m_s,ejected_mass_share,height_um", "one row per particle", &fault);
+                     "v_z_m_s,v_along_m_s,ejected_mass_share,contact_um2,bonded_um2,height_um", "one row per particle",
+                     &fault);
     for (a = 0; a < q->count; a++) {
         mpm_io_csv_integer(&t, a);
         for (k = 0; k < 3; k++) mpm_io_csv_real(&t, (mpm_real)q->center[a][k]);
         mpm_io_csv_text(&t, particle_fate_text[r[a].fate]);
-        mpm_io_csv_real(&t, (mpm_real)r[a].bond.pbcp);
-        mpm_io_csv_integer(&t, r[a].bond.contacted);
-        mpm_io_csv_integer(&t, r[a].bond.bonded);
-        mpm_io_csv_integer(&t, r[a].nodes);
+        mpm_io_csv_real(&t, (mpm_real)r[a].met.pbcp);
+        mpm_io_csv_integer(&t, r[a].met.contacted);
+        mpm_io_csv_integer(&t, r[a].met.bonded);
+        mpm_io_csv_integer(&t, r[a].met.nodes);
         mpm_io_csv_real(&t, (mpm_real)r[a].v_z);
         mpm_io_csv_real(&t, (mpm_real)r[a].v_along);
         mpm_io_csv_real(&t, (mpm_real)r[a].ejected);
+        mpm_io_csv_real(&t, (mpm_real)r[a].met.touched);
+        mpm_io_csv_real(&t, (mpm_real)r[a].met.area);
         mpm_io_csv_real(&t, (mpm_real)r[a].height);
     }
     return mpm_io_csv_end(&t, &fault) >= 0 || report(&fault, path);
@@ -328,23 +392,38 @@ static inline int particles_pairs(const impact *s, const particles_case *q)
     mpm_io_csv t;
     int32_t a, b;
     mpm_io_csv_begin(&t, file_in(q->out.folder, "pairs.csv", path, sizeof path),
-                     "a,b,pbcp_percent,contacted_points,bonded_points,bonded_nodes,held_nodes",
+                     "a,b,pbcp_percent,contacted_points,bonded_points,bonded_nodes,held_nodes,contact_um2,bonded_um2",
                      "surfaces between two bodies; the last body is the substrate", &fault);
     for (a = 0; a < (int32_t)q->count; a++)
         for (b = a + 1; b <= (int32_t)q->count; b++) {
-            mpm_bond_measure m;
-            const mpm_interface f = mpm_interface_of(&s->world, a, b);
-            if (mpm_bond_measure_pair(&s->bond, &s->world, a, b, &m) < 0 || (m.contacted == 0 && f.nodes == 0))
-                continue;
+            const particles_meeting m = particles_meet(s, a, b);
+            if (!(m.touched > 0) && mpm_interface_of(&s->world, a, b).nodes == 0) continue;
             mpm_io_csv_integer(&t, a);
             mpm_io_csv_integer(&t, b);
             mpm_io_csv_real(&t, (mpm_real)m.pbcp);
             mpm_io_csv_integer(&t, m.contacted);
             mpm_io_csv_integer(&t, m.bonded);
-            mpm_io_csv_integer(&t, f.bonded);
-            mpm_io_csv_integer(&t, f.held);
+            mpm_io_csv_integer(&t, m.nodes);
+            mpm_io_csv_integer(&t, m.held);
+            mpm_io_csv_real(&t, (mpm_real)m.touched);
+            mpm_io_csv_real(&t, (mpm_real)m.area);
         }
     return mpm_io_csv_end(&t, &fault) >= 0 || report(&fault, path);
+}
+
+/* Bonded share of all that touched, % */
+static inline double particles_pbcp(const impact *s, const particles_case *q)
+{
+    double touched = 0, bonded = 0;
+    int32_t a, b;
+    if (s->surfaces.surfaces == 0) return mpm_bond_measure_body(&s->world, -1).pbcp;
+    for (a = 0; a < (int32_t)q->count; a++)
+        for (b = a + 1; b <= (int32_t)q->count; b++) {
+            const particles_meeting m = particles_meet(s, a, b);
+            touched += m.touched;
+            bonded += m.area;
+        }
+    return 100 * case_share(bonded, touched);
 }
 
 /* The checksum of both tables, which the summary keeps. */
@@ -382,7 +461,7 @@ static inline int particles_summary(const impact *s, const particles_case *q, co
     mpm_io_json_integer(&j, "mpm_digits", MPM_DIGITS); /* of the number type */
     mpm_io_json_integer(&j, "particles", q->count);
     for (k = 0; k < PARTICLE_FATES; k++) mpm_io_json_integer(&j, particle_fate_text[k], fates[k]);
-    mpm_io_json_number(&j, "pbcp_percent", mpm_bond_measure_body(w, -1).pbcp);
+    mpm_io_json_number(&j, "pbcp_percent", particles_pbcp(s, q));
     mpm_io_json_integer(&j, "points", sums.points);
     mpm_io_json_integer(&j, "steps", w->steps);
     mpm_io_json_number(&j, "time_ns", (double)w->time * 1e3);
@@ -403,13 +482,13 @@ static inline void particles_print(const particles_case *q, const particle_repor
 {
     const int64_t shown = q->count < 40 ? q->count : 40;
     int64_t k;
-    printf("\n  particle   fate          PBCP %%   bonded nodes   v_z m/s   along m/s   ejected %%\n");
+    printf("\n  particle   fate          PBCP %%   bonded um2   v_z m/s   along m/s   ejected %%\n");
     for (k = 0; k < shown; k++)
-        printf("  %8lld   %-11s   %6.2f   %12lld   %7.2f   %9.2f   %9.1f\n", (long long)k,
-               particle_fate_text[r[k].fate], r[k].bond.pbcp, (long long)r[k].nodes, r[k].v_z, r[k].v_along,
+        printf("  %8lld   %-11s   %6.2f   %10.3f   %7.2f   %9.2f   %9.1f\n", (long long)k,
+               particle_fate_text[r[k].fate], r[k].met.pbcp, r[k].met.area, r[k].v_z, r[k].v_along,
                100 * r[k].ejected);
-    printf("\n  PBCP of all surfaces %.2f %%; %s/particles.csv, pairs.csv, summary.json%s\n",
-           mpm_bond_measure_body(&s->world, -1).pbcp, q->out.folder, q->out.frames > 0 ? ", particles.pvd" : "");
+    printf("\n  PBCP of all surfaces %.2f %%; %s/particles.csv, pairs.csv, summary.json%s\n", particles_pbcp(s, q),
+           q->out.folder, q->out.frames > 0 ? ", particles.pvd" : "");
 }
 
 /* Whether a summary is of this version and number type; one that does not name the type is of double. */
@@ -482,53 +561,6 @@ static inline int particles_done(const particles_case *q)
 
 #define PARTICLES_CHECKPOINT 60 /* CPU seconds from one to the next */
 
-/* What must be the same for a run that goes on: options, frames, the world. Test: 63_particles. */
-static inline const char *particles_text(const impact *s, const particles_case *q)
-{
-    static char text[1000 * (PARTICLES + 8)];
-    impact_case c = q->base;
-    option o[IMPACT_OPTIONS];
-    size_t used = 0;
-    int n = impact_options(&c, o), k;
-    for (k = 0; k < n; k++) {
-        char number[OPTION_NUMBER];
-        used = mpm_io_line(text, sizeof text, used, o[k].name, option_text(&o[k], number));
-    }
-    used = mpm_io_line_number(text, sizeof text, used, "frames", (double)q->out.frames);
-    used = mpm_io_line_number(text, sizeof text, used, "dt", (double)s->dt);
-    mpm_io_world_text(text + used, sizeof text - used, &s->world);
-    return text;
-}
-
-/* Writes the checkpoint, or reads it (nothing is changed if it is none of this scene): the world, and what is
-   counted beside it. */
-static inline mpm_status particles_checkpoint(impact *s, particles_case *q, int write, const char *path,
-                                              mpm_fault *fault)
-{
-    static mpm_blob blob[MPM_BLOBS(PARTICLES + 1) + 3]; /* the substrate too */
-    const char *text = particles_text(s, q);
-    mpm_status status;
-    int n = mpm_blobs(&s->world, blob);
-    blob[n++] = mpm_blob_of("start", &s->start, sizeof s->start);
-    blob[n++] = mpm_blob_of("frame", &q->out.frame, sizeof q->out.frame);
-    blob[n++] = mpm_blob_of("cpu seconds", &q->out.cpu, sizeof q->out.cpu);
-    if (write) return mpm_io_checkpoint_write(path, text, blob, n, fault);
-    status = mpm_io_checkpoint_read(path, text, blob, n, fault);
-    if (status >= 0 && (status = mpm_restored(&s->world, blob)) < 0) *fault = s->world.fault;
-    return status;
-}
-
-static inline int particles_save(impact *s, particles_case *q)
-{
-    const clock_t mark = clock();
-    char path[PATH_BYTES];
-    mpm_fault fault;
-    const int ok = particles_checkpoint(s, q, 1, file_in(q->out.folder, "checkpoint.bin", path, sizeof path),
-                                        &fault) >= 0;
-    q->out.writing += clock() - mark;
-    return ok || report(&fault, path);
-}
-
 /* Goes on where an earlier run of this scene was left, or begins the output. Returns 1, or 0 after a message. */
 static inline int particles_resume(impact *s, particles_case *q)
 {
@@ -537,12 +569,11 @@ static inline int particles_resume(impact *s, particles_case *q)
     const int found = is_there(file_in(q->out.folder, "checkpoint.bin", path, sizeof path));
     if (found < 0) return 0; /* what it holds must not be lost */
     if (found) {
-        if (particles_checkpoint(s, q, 0, path, &fault) >= 0) {
-            if (!q->out.quiet)
-                printf("going on from step %lld of %lld\n", (long long)s->world.steps, (long long)s->steps);
+        if (impact_checkpoint(s, &q->base, &q->out, 0, path, &fault) >= 0) {
+            impact_resumed(s, &q->out);
             return 1;
         }
-        if (s->world.points.count == 0) return report(&fault, path);
+        if (s->world.points.count == 0 || s->world.steps > 0) return report(&fault, path);
         mpm_io_fault_text(text, sizeof text, &fault);
         fprintf(stderr, "%s is of other options or damaged (%s): starting afresh\n", path, text);
     }
@@ -556,23 +587,19 @@ static inline int particles_resume(impact *s, particles_case *q)
 static inline int particles_run(impact *s, particles_case *q)
 {
     const mpm_world *w = &s->world;
-    double saved = q->out.cpu;
+    impact_stops stops = {PARTICLES_CHECKPOINT, q->stop_after, q->out.cpu};
+    int status = 1;
     output_start(&q->out, w);
     for (;;) {
         if (output_due(&q->out, w, s->steps) && !particles_frame(s, q)) return 0;
         if (w->steps >= s->steps) break;
-        if (q->stop_after > 0 && w->steps - q->out.first >= q->stop_after) break;
-        if (output_cpu(&q->out) - saved >= PARTICLES_CHECKPOINT) {
-            if (!particles_save(s, q)) return 0;
-            saved = q->out.cpu;
-        }
+        if ((status = impact_goes_on(s, &q->base, &q->out, &stops)) <= 0) break;
         if (impact_step(s) < 0) return report(&w->fault, "step");
         output_progress(&q->out, w, s->steps);
     }
     output_progress_end(&q->out);
     output_cpu(&q->out);
-    if (w->steps >= s->steps) return 1;
-    return particles_save(s, q) ? -1 : 0;
+    return status;
 }
 
 /* The rest of main(): runs the scene and writes everything. Returns 0; 1 after a message; 3 when stopped. */
@@ -584,8 +611,7 @@ static inline int particles_main(particles_case *q, const option *o, int n)
     int status;
     if (!particles_begin(&s, q, message, sizeof message)) return !complain(message);
     status = particles_resume(&s, q) ? particles_run(&s, q) : 0;
-    if (status < 0)
-        printf("stopped at step %lld of %lld; run again to go on\n", (long long)s.world.steps, (long long)s.steps);
+    if (status < 0) impact_stopped(&s, "run again");
     if (status > 0) {
         particles_report(&s, q, r);
         status = particles_table(q, r) && particles_pairs(&s, q) && particles_summary(&s, q, r, o, n);
@@ -603,7 +629,6 @@ static inline int particles_options(particles_case *q, option *o)
 {
     int n = impact_options(&q->base, o);
     option_drop(o, &n, "gap"); /* by the places of the particles */
-    option_drop(o, &n, "method");
     output_options(&q->out, o, &n);
     option_add(o, &n, "stop-after", OPTION_INTEGER, &q->stop_after,
                "write a checkpoint after so many steps and stop; 0: never");

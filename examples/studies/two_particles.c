@@ -16,6 +16,7 @@ static int carry_out(int argc, char **argv)
     char message[200];
     int n, parsed;
     q = particles_default("half", "build/two_particles-out");
+    particles_method(&q, argc, argv);
     n = particles_options(&q, o);
     option_add(o, &n, "offset", OPTION_REAL, &offset, "of the second particle along x, at the start, um");
     option_add(o, &n, "height", OPTION_REAL, &height, "of its centre over the substrate, at the start, um");
@@ -26,6 +27,7 @@ static int carry_out(int argc, char **argv)
                            "run again with the same options after an interruption, it goes on; a finished scene\n"
                            "is not repeated: delete the folder for that.", o, n);
     if (parsed) return parsed < 0;
+    particles_complete(&q);
     if (!particles_check(&q, message, sizeof message) ||
         !case_wants(fabs(offset) < 1e3, "offset", offset, "must be a length in um", message, sizeof message) ||
         !case_wants(height > 0 && height < 1e4, "height", height, "must be > 0 um", message, sizeof message))

@@ -50,4 +50,24 @@ for c in examples/*.c examples/studies/*.c examples/studies/reproduction/main.c;
     [ -c /dev/full ] && [ -x "build/$name" ] && grep -q program_end "$c" || continue
     check "$name says that standard output is full" full "build/$name"
 done
+# The job that other codes are timed on: its points, its books, whatever is chosen.
+job() { # options...: few points, unless said otherwise; what it prints to $dir/job
+    build/bench_impact --quiet --spacing 1 --time 1 "$@" >"$dir/job"
+}
+books() { # momentum to round-off, less than 1 % of the energy unaccounted for
+    awk '/^  momentum error/ { m = $3 + 0; seen++ } /^  energy unaccounted/ { e = $3 + 0; seen++ }
+         END { exit !(seen == 2 && m < 1e-12 && e < 1 && e > -1) }' "$dir/job"
+}
+if [ -x build/bench_impact ]; then
+    check "bench_impact runs a step of its job" job --spacing 0.5 --time 0.01
+    check "... of 57 856 and 144 000 points" grep -q "^sphere 57856 points, block 144000 points, 1 steps" "$dir/job"
+    for choice in "--law jc" "--law elastic" "--law ptw" "--contact weld" "--functions gimp"; do
+        # shellcheck disable=SC2086
+        check "bench_impact $choice" job $choice
+        check "... conserves momentum and energy" books
+        check "... and says what it costs" grep -q "^  point-steps per CPU second *[1-9]" "$dir/job"
+    done
+    check "bench_impact refuses a spacing" sh -c "! build/bench_impact --spacing 0 2>'$dir/refused' &&
+        grep -q 'spacing 0' '$dir/refused'"
+fi
 check_end

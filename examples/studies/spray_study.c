@@ -10,11 +10,11 @@
 #include "mpm_spray.h"
 
 #include <stdarg.h>
-#include <time.h>
 
 #include "plots.h"
 #include "program.h"
 #include "spray_view.h"
+#include "terminal.h"
 
 static const char *const program = "examples/studies/spray_study.c";
 
@@ -65,8 +65,8 @@ typedef struct study {
     double time;   /* of a run [s] */
     int seeds;
     const char *log, *data, *report, *budget;
-    int quiet, planned, done;
-    time_t started;
+    int quiet, planned, done, fresh;
+    progress line;
 } study;
 
 static int same_case(const run_case *a, const run_case *b)
@@ -260,6 +260,17 @@ static const record *find(const study *st, const run_case *c)
     return NULL;
 }
 
+/* "run 12 of 40, left 2:10", by the runs that were made now. */
+static void show(study *st)
+{
+    const double left = progress_elapsed(&st->line) / st->fresh * (st->planned - st->done);
+    char line[100];
+    if (!progress_due(&st->line, (double)st->done / st->planned)) return;
+    snprintf(line, sizeof line, "run %d of %d, left %.0f:%02d", st->done, st->planned, floor(left / 60),
+             (int)fmod(left, 60));
+    progress_show(&st->line, line);
+}
+
 /* Does a case unless it has been done. Returns 0, or -1 after a message. */
 static int need(study *st, const run_case *c)
 {
@@ -270,11 +281,8 @@ static int need(study *st, const run_case *c)
     r->c = *c;
     if (run_one(c, r->value) || log_write(st, r)) return -1;
     st->count++;
-    if (!st->quiet) {
-        double gone = difftime(time(NULL), st->started);
-        fprintf(stderr, "\rrun %d of %d, left %.0f s   ", st->done, st->planned,
-                gone / st->done * (st->planned - st->done));
-    }
+    st->fresh++;
+    show(st);
     return 0;
 }
 
@@ -330,7 +338,7 @@ static int plan(study *st)
     st->planned = ALPHAS * plan_alpha(st, alphas[0], 1);
     for (k = 0; k < ALPHAS; k++)
         if (plan_alpha(st, alphas[k], 0) < 0) return -1;
-    if (!st->quiet) fprintf(stderr, "\r%40s\r", "");
+    progress_end(&st->line);
     return 0;
 }
 
@@ -859,7 +867,7 @@ static int carry_out(int argc, char **argv)
     if ((parsed = options(&st, argc, argv)) != 0) return parsed < 0;
     st.time = st.budget[0] == 'q' ? 0.02 : 0.06;
     st.seeds = st.budget[0] == 'q' ? 1 : 3;
-    st.started = time(NULL);
+    progress_begin(&st.line, st.quiet);
     if (mpm_io_make_directory(st.data, &fault) < 0) goto fail;
     if (log_read(&st) || plan(&st) || run_long(&l)) return 1;
     once = fmin(cost(1e5), cost(1e5));

@@ -118,6 +118,19 @@ static int write_summary(const impact *s, const impact_result *r, const output *
     return 1;
 }
 
+/* The table's words, a line each. */
+static void print_words(const impact *s)
+{
+    if (s->surfaces.surfaces > 0) {
+        printf("\n  bonded: of the area that touched, the part with adhesion that is not spent\n");
+        printf("  held:   markers that adhesion drew to the other surface in the last step\n");
+        return;
+    }
+    printf("\n  PBCP: of the surface that touched the other body, the part of points whose bond variable D is 1 or more\n");
+    printf("  ABP:  D of that surface on the mean\n");
+    printf("  held: pairs of nodes that the bond kept from parting in the last step\n");
+}
+
 static void print_table(const impact *s, const impact_case *c, const impact_result *r, double cpu)
 {
     const mpm_world *w = &s->world;
@@ -166,6 +179,7 @@ static void print_table(const impact *s, const impact_case *c, const impact_resu
            (long long)w->steps, (double)s->dt * 1e6, cpu,
            cpu > 0 ? 1e-6 * (double)w->steps * (double)r->all.points / cpu : 0,
            (double)mpm_bytes_used(w) / (double)r->all.points);
+    print_words(s);
 }
 
 /* Time integration: one call per phase. */

@@ -65,11 +65,9 @@ static inline int output_begin(output *o)
     return mpm_io_pvd_begin(file_in(o->folder, name, path, sizeof path), &fault) >= 0 || report(&fault, path);
 }
 
-/* Starts the clock, before the first step or where an earlier run was left. From now on Ctrl-C and SIGTERM ask for the
-   end: see stop_asked. */
+/* Starts the clock, before the first step or where an earlier run was left. */
 static inline void output_start(output *o, const mpm_world *w)
 {
-    stop_listen();
     progress_begin(&o->line, o->quiet);
     o->begun = clock();
     o->writing = 0;

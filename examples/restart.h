@@ -58,7 +58,8 @@ static inline int restart_save(restart *r)
     return ok || report(&fault, path);
 }
 
-/* Begins the output, or with --resume goes on from the checkpoint. n options make the run, and the time step dt does. */
+/* Begins the output, or with --resume goes on from the checkpoint. n options make the run, and the time step dt does.
+   From now on Ctrl-C and SIGTERM ask for the end. */
 static inline int restart_begin(restart *r, mpm_world *w, output *out, mpm_totals *start, mpm_real dt, const option *o,
                                 int n)
 {
@@ -74,6 +75,7 @@ static inline int restart_begin(restart *r, mpm_world *w, output *out, mpm_total
     used = mpm_io_line_number(r->text, sizeof r->text, used, "frames", (double)out->frames);
     used = mpm_io_line_number(r->text, sizeof r->text, used, "dt", (double)dt);
     mpm_io_world_text(r->text + used, sizeof r->text - used, w);
+    stop_listen();
     if (!r->resume) return output_begin(out);
     file_in(out->folder, "checkpoint.bin", path, sizeof path);
     if (restart_file(r, 0, path, &fault) < 0) return report(&fault, path);

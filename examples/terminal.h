@@ -88,6 +88,19 @@ static inline void progress_show(const progress *p, const char *line)
     fflush(stderr);
 }
 
+/* "impact 35 %, left 0:12", if it is due. */
+static inline void progress_part(progress *p, const char *what, double part)
+{
+    const double seconds = progress_elapsed(p), left = part > 0 && part < 1 ? seconds / part * (1 - part) : 0;
+    char line[120];
+    int n;
+    if (!progress_due(p, part)) return;
+    n = snprintf(line, sizeof line, "%.60s %d %%", what, (int)(100 * part));
+    if (seconds > 0)
+        snprintf(line + n, sizeof line - (size_t)n, ", left %ld:%02d", (long)left / 60, (int)((long)left % 60));
+    progress_show(p, line);
+}
+
 /* Leaves an empty line. */
 static inline void progress_end(const progress *p)
 {

@@ -557,11 +557,12 @@ static inline int particles_run(impact *s, particles_case *q)
 {
     const mpm_world *w = &s->world;
     double saved = q->out.cpu;
+    stop_listen();
     output_start(&q->out, w);
     for (;;) {
         if (output_due(&q->out, w, s->steps) && !particles_frame(s, q)) return 0;
         if (w->steps >= s->steps) break;
-        if (q->stop_after > 0 && w->steps - q->out.first >= q->stop_after) break;
+        if (stop_asked() || (q->stop_after > 0 && w->steps - q->out.first >= q->stop_after)) break;
         if (output_cpu(&q->out) - saved >= PARTICLES_CHECKPOINT) {
             if (!particles_save(s, q)) return 0;
             saved = q->out.cpu;

@@ -126,7 +126,7 @@ static void print_words(const impact *s)
         printf("  held:   markers that adhesion drew to the other surface in the last step\n");
         return;
     }
-    printf("\n  PBCP: of the surface that touched the other body, the part of points whose bond variable D is 1 or more\n");
+    printf("\n  PBCP: of the surface that touched the other body, the part whose bond variable D is 1 or more\n");
     printf("  ABP:  D of that surface on the mean\n");
     printf("  held: pairs of nodes that the bond kept from parting in the last step\n");
 }

@@ -1,6 +1,6 @@
-/* restart.h - a run of one world that can be stopped and goes on: checkpoint.bin in the output folder, after so much time
-   and when Ctrl-C or SIGTERM ask for the end. What comes out in the end is that of the run that was never stopped, byte
-   for byte but CPU times. SPDX-License-Identifier: MIT */
+/* restart.h - a run of one world that can be stopped and goes on: checkpoint.bin in the output folder, after so much
+   time and when Ctrl-C or SIGTERM ask for the end. What comes out in the end is that of the run that was never stopped,
+   byte for byte but CPU times. SPDX-License-Identifier: MIT */
 #ifndef RESTART_H
 #define RESTART_H
 
@@ -84,7 +84,7 @@ static inline int restart_begin(restart *r, mpm_world *w, output *out, mpm_total
     return 1;
 }
 
-/* Before a step: a checkpoint, if one is due. Returns 1; 0 after a message; -1: stop here, the checkpoint is written. */
+/* Before a step: a checkpoint, if one is due. Returns 1; 0 after a message; -1: stop here, there is a checkpoint. */
 static inline int restart_goes_on(restart *r)
 {
     if (stop_asked()) return restart_save(r) ? -1 : 0;

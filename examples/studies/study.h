@@ -341,8 +341,8 @@ static inline void study_measure(const impact *run, const impact_case *c, const 
 
 static inline double study_seconds(clock_t since) { return (double)(clock() - since) / (double)CLOCKS_PER_SEC; }
 
-/* Runs a case to its end, or unless s->whole until its outcome is decided. Returns 1; 0 with a message; -1 when asked to
-   stop. */
+/* Runs a case to its end, or unless s->whole until its outcome is decided. Returns 1; 0 with a message; -1 when asked
+   to stop. */
 static inline int study_run(study *s, const impact_case *c, double *value, char *message, size_t n)
 {
     const clock_t begun = clock();

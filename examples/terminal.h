@@ -52,8 +52,8 @@ static inline void progress_begin(progress *p, int quiet)
     p->cpu = clock();
 }
 
-/* Seconds by the clock on the wall, which counts them whole. CPU time tells them finer, as long as nothing else has used
-   the processor; 0 in the first second, of which nothing can be said. */
+/* Seconds by the clock on the wall, which counts them whole. CPU time tells them finer, as long as nothing else has
+   used the processor; 0 in the first second, of which nothing can be said. */
 static inline double progress_seconds(double wall, double cpu)
 {
     const double seconds = cpu > wall - 1 && cpu < wall + 1 ? cpu : wall;

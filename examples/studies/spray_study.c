@@ -823,13 +823,13 @@ static int write_report(const study *st, const long_run *l, double once, double 
                "| ns per particle-step, feed 1e5 /s | - | %.0f |\n"
                "| the same at feed 8e5 /s | < 1.15 times | %.0f, %.2f times |\n",
             l->cpu, l->megabytes, l->per_second, (long long)l->not_converged, once, eightfold, eightfold / once);
-    fprintf(f, "\nA particle-step is one particle moved by one step of %g us. It costs one evaluation of the gas and of "
-               "the drag where the particle will be, for the fixed point starts so well, and the search for what it meets. "
-               "Particles fly in blocks, so that a processor has several of these long chains of arithmetic in hand. "
-               "Every step they are sorted into rows of bins, and the bins around a path are read without asking how "
-               "many are in them; only where two are is a contact looked for. At eight times the feed there are eight "
-               "times as many neighbours, still less than one for most, and more memory to walk through. Contacts are "
-               "exact: `tests/53_spray_search.c` compares with every pair, byte by byte.\n",
+    fprintf(f, "\nA particle-step is one particle moved by one step of %g us. It costs one evaluation of the gas and "
+               "of the drag where the particle will be, for the fixed point starts so well, and the search for what it "
+               "meets. Particles fly in blocks, so that a processor has several of these long chains of arithmetic in "
+               "hand. Every step they are sorted into rows of bins, and the bins around a path are read without asking "
+               "how many are in them; only where two are is a contact looked for. At eight times the feed there are "
+               "eight times as many neighbours, still less than one for most, and more memory to walk through. "
+               "Contacts are exact: `tests/53_spray_search.c` compares with every pair, byte by byte.\n",
             1e6 * (double)mpm_spray_desc_default().dt);
     if (mpm_io_close(&file, &fault) >= 0) return 0;
     return fprintf(stderr, "error: cannot write %s\n", st->report), -1;

@@ -292,6 +292,17 @@ typedef struct mpm_spray_grid {
     int32_t *where;    /* per item: its cell, 3 numbers */
 } mpm_spray_grid;
 
+/* Particles in flight in the order of their cells. A row of cells along z lies in one run of slots, so what is in it
+   stands together. Private to the implementation. */
+typedef struct mpm_spray_rows {
+    mpm_real per_cell;   /* 1 / edge [1/m] */
+    uint32_t mask;       /* slots in use - 1 */
+    int32_t count;       /* particles */
+    int32_t *start;      /* per slot: the first of its places; one more: count */
+    mpm_real *place;     /* where those that stand there are binned, 3 per place [m] */
+    int32_t *particle;   /* ... which they are */
+} mpm_spray_rows;
+
 typedef struct mpm_spray {
     mpm_spray_desc desc;
     mpm_spray_jet jet;
@@ -329,7 +340,8 @@ typedef struct mpm_spray {
     int32_t heap_count;
     int32_t *gone;         /* 1: deposited in this step */
     int32_t *list;         /* neighbours just gathered */
-    mpm_spray_grid bins, deposit_bins;
+    mpm_spray_rows rows;
+    mpm_spray_grid inlet_bins, deposit_bins;
     mpm_real radius_max, reach;  /* largest radius; farthest from the binned place in this step */
 
     /* constants worked out from the description */
@@ -1083,9 +1095,12 @@ static inline size_t mpm__spray_layout(mpm_spray *s, char *base)
     s->slot = (int32_t *)mpm_carve(base, &at, n, i32);
     s->gone = (int32_t *)mpm_carve(base, &at, n, i32);
     s->list = (int32_t *)mpm_carve(base, &at, n, i32);
-    s->bins.head = (int32_t *)mpm_carve(base, &at, slots, i32);
-    s->bins.next = (int32_t *)mpm_carve(base, &at, n, i32);
-    s->bins.where = (int32_t *)mpm_carve(base, &at, 3 * n, i32);
+    s->rows.start = (int32_t *)mpm_carve(base, &at, slots + 1, i32);
+    s->rows.place = (mpm_real *)mpm_carve(base, &at, 3 * n, real);
+    s->rows.particle = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->inlet_bins.head = (int32_t *)mpm_carve(base, &at, slots, i32);
+    s->inlet_bins.next = (int32_t *)mpm_carve(base, &at, n, i32);
+    s->inlet_bins.where = (int32_t *)mpm_carve(base, &at, 3 * n, i32);
     s->deposit_bins.head = (int32_t *)mpm_carve(base, &at, slots, i32);
     s->deposit_bins.next = (int32_t *)mpm_carve(base, &at, n, i32);
     s->deposit_bins.where = (int32_t *)mpm_carve(base, &at, 3 * n, i32);
@@ -1175,11 +1190,12 @@ static inline void mpm__spray_grid_add(mpm_spray_grid *g, const mpm_real *x)
     g->head[h] = item;
 }
 
-static inline int32_t mpm__spray_everything(const mpm_spray_grid *g, int32_t *list)
+/* Lists all of them. */
+static inline int32_t mpm__spray_numbers(int32_t count, int32_t *list)
 {
     int32_t i;
-    for (i = 0; i < g->count; i++) list[i] = i;
-    return g->count;
+    for (i = 0; i < count; i++) list[i] = i;
+    return count;
 }
 
 /* Lists the items whose cells meet the box low .. high (and so all whose place is in it). */
@@ -1194,7 +1210,7 @@ static inline int32_t mpm__spray_gather(const mpm_spray_grid *g, const mpm_real 
         b[d] = mpm__spray_cell(high[d], g->per_cell);
         cells *= (mpm_real)(b[d] - a[d] + 1);
     }
-    if (cells > 64 && cells > (mpm_real)g->count) return mpm__spray_everything(g, list);
+    if (cells > 64 && cells > (mpm_real)g->count) return mpm__spray_numbers(g->count, list);
     for (i = a[0]; i <= b[0]; i++)
         for (j = a[1]; j <= b[1]; j++)
             for (k = a[2]; k <= b[2]; k++)
@@ -1209,7 +1225,7 @@ static inline int32_t mpm__spray_gather(const mpm_spray_grid *g, const mpm_real 
 static inline int32_t mpm__spray_list(mpm_spray *s, const mpm_spray_grid *g, const mpm_real *low, const mpm_real *high)
 {
     return s->desc.search == MPM_SPRAY_BINS ? mpm__spray_gather(g, low, high, s->list)
-                                            : mpm__spray_everything(g, s->list);
+                                            : mpm__spray_numbers(g->count, s->list);
 }
 
 /* The same for the box of `margin` around x. */
@@ -1222,6 +1238,83 @@ static inline int32_t mpm__spray_list_around(mpm_spray *s, const mpm_spray_grid 
         high[d] = x[d] + margin;
     }
     return mpm__spray_list(s, g, low, high);
+}
+
+/* ---- rows ---------------------------------------------------------------------------------- */
+
+#define MPM__SPRAY_WIDER MPM_R(1.001) /* boxes by this: more than rounding takes from them */
+
+static inline uint32_t mpm__spray_row(int32_t i, int32_t j)
+{
+    const uint32_t h = (uint32_t)i * 0x9E3779B1u + (uint32_t)j * 0x85EBCA77u;
+    return h ^ (h >> 15);
+}
+
+static inline uint32_t mpm__spray_row_slot(const mpm_spray_rows *r, const mpm_real *x)
+{
+    const int32_t i = mpm__spray_cell(x[0], r->per_cell), j = mpm__spray_cell(x[1], r->per_cell);
+    return (mpm__spray_row(i, j) + (uint32_t)mpm__spray_cell(x[2], r->per_cell)) & r->mask;
+}
+
+/* Enters `count` particles at x, in the order of their slots; `slot` is room for one number each. */
+static inline void mpm__spray_rows_fill(mpm_spray_rows *r, mpm_real cell, uint32_t slots, const mpm_real *x,
+                                        int32_t count, int32_t *slot)
+{
+    int32_t i, sum = 0;
+    uint32_t h;
+    r->per_cell = 1 / cell;
+    r->mask = slots - 1;
+    r->count = count;
+    memset(r->start, 0, slots * sizeof *r->start);
+    for (i = 0; i < count; i++) r->start[slot[i] = (int32_t)mpm__spray_row_slot(r, x + 3 * i)]++;
+    for (h = 0; h < slots; h++) r->start[h] = sum += r->start[h];
+    r->start[slots] = count;
+    for (i = count - 1; i >= 0; i--) {
+        const int32_t at = --r->start[slot[i]];
+        memcpy(r->place + 3 * at, x + 3 * i, 3 * sizeof *x);
+        r->particle[at] = i;
+    }
+}
+
+/* Puts those of the slots from..to-1 that are in the box behind the n of a list. Returns how many there are then, -1 if
+   there might be more than particles. */
+static inline int32_t mpm__spray_rows_take(const mpm_spray_rows *r, uint32_t from, uint32_t to, const mpm_real *low,
+                                           const mpm_real *high, int32_t *list, int32_t n)
+{
+    int32_t at;
+    if (r->start[to] - r->start[from] > r->count - n) return -1;
+    for (at = r->start[from]; at < r->start[to]; at++) {
+        const mpm_real *x = r->place + 3 * at;
+        list[n] = r->particle[at];
+        n += (x[0] >= low[0]) & (x[0] <= high[0]) & (x[1] >= low[1]) & (x[1] <= high[1]) & (x[2] >= low[2]) &
+             (x[2] <= high[2]);
+    }
+    return n;
+}
+
+/* Lists the particles that are binned in the box, some perhaps twice, or all there are. Returns their number. */
+static inline int32_t mpm__spray_rows_gather(const mpm_spray_rows *r, const mpm_real *low, const mpm_real *high,
+                                             int32_t *list)
+{
+    const uint32_t slots = r->mask + 1;
+    int32_t a[3], b[3], n = 0, i, j;
+    mpm_real cells = 1;
+    int d;
+    for (d = 0; d < 3; d++) {
+        a[d] = mpm__spray_cell(low[d], r->per_cell);
+        b[d] = mpm__spray_cell(high[d], r->per_cell);
+        cells *= (mpm_real)(b[d] - a[d] + 1);
+    }
+    if (cells > 64 && cells > (mpm_real)r->count) return mpm__spray_numbers(r->count, list);
+    for (i = a[0]; i <= b[0]; i++)
+        for (j = a[1]; j <= b[1]; j++) {
+            const uint32_t from = (mpm__spray_row(i, j) + (uint32_t)a[2]) & r->mask;
+            const uint32_t to = from + (uint32_t)(b[2] - a[2]) + 1;
+            n = mpm__spray_rows_take(r, from, to < slots ? to : slots, low, high, list, n);
+            if (to > slots && n >= 0) n = mpm__spray_rows_take(r, 0, to - slots, low, high, list, n);
+            if (n < 0) return mpm__spray_numbers(r->count, list); /* rows that share slots, met time and again */
+        }
+    return n;
 }
 
 /* ---- setting up ---------------------------------------------------------------------------- */
@@ -1352,12 +1445,13 @@ static inline void mpm__spray_place(mpm_spray *s, mpm_spray_ball *b)
 static inline void mpm__spray_bin_places(mpm_spray *s)
 {
     const int64_t most = s->live + s->tally.pending, room = s->desc.capacity;
+    const uint32_t slots = mpm__spray_slots((int32_t)(most < room ? most : room));
     int32_t i;
     s->radius_max = 0;
-    mpm__spray_grid_clear(&s->bins, 4 * s->desc.median_radius, mpm__spray_slots((int32_t)(most < room ? most : room)));
+    mpm__spray_grid_clear(&s->inlet_bins, 4 * s->desc.median_radius, slots);
     for (i = 0; i < s->live; i++) {
         s->radius_max = mpm__spray_max(s->radius_max, s->radius[i]);
-        mpm__spray_grid_add(&s->bins, s->x + 3 * i);
+        mpm__spray_grid_add(&s->inlet_bins, s->x + 3 * i);
     }
 }
 
@@ -1365,7 +1459,7 @@ static inline int mpm__spray_place_free(mpm_spray *s, const mpm_spray_ball *b)
 {
     /* by more than rounding can take from it */
     const mpm_real margin = MPM_R(1.001) * (b->radius + s->radius_max) + 8 * MPM_EPSILON * s->desc.nozzle_radius;
-    const int32_t n = mpm__spray_list_around(s, &s->bins, b->x, margin);
+    const int32_t n = mpm__spray_list_around(s, &s->inlet_bins, b->x, margin);
     int32_t k;
     for (k = 0; k < n; k++) {
         const mpm_real *x = s->x + 3 * s->list[k];
@@ -1396,7 +1490,7 @@ MPM_API mpm_status mpm_spray_inject(mpm_spray *s)
         while (!mpm__spray_place_free(s, &b) && ++tries < MPM__SPRAY_TRIES);
         if (tries == MPM__SPRAY_TRIES) return MPM_OK; /* no room: it waits */
         if ((status = mpm_spray_add(s, &b)) != MPM_OK) return status;
-        mpm__spray_grid_add(&s->bins, s->x + 3 * (s->live - 1));
+        mpm__spray_grid_add(&s->inlet_bins, s->x + 3 * (s->live - 1));
         s->radius_max = mpm__spray_max(s->radius_max, b.radius);
         s->tally.wait_radius = 0;
         s->tally.pending--;
@@ -1406,24 +1500,50 @@ MPM_API mpm_status mpm_spray_inject(mpm_spray *s)
 
 /* ---- fly ----------------------------------------------------------------------------------- */
 
-/* Acceleration by drag (B 24) and gravity; returns the drag rate, gives the gas velocity. */
-static inline mpm_real mpm__spray_acceleration(const mpm_spray *s, mpm_real time, const mpm_spray_ball *b,
-                                               mpm_real *gas, mpm_real *acceleration)
+#define MPM__SPRAY_BLOCK 32 /* particles that are worked on together */
+
+/* How many, from particle i on. */
+static inline int mpm__spray_block(const mpm_spray *s, int32_t i)
+{
+    return (int)(s->live - i < MPM__SPRAY_BLOCK ? s->live - i : MPM__SPRAY_BLOCK);
+}
+
+/* Where one particle is, and how it moves there. */
+typedef struct mpm__spray_state {
+    mpm_real x[3], v[3];
+} mpm__spray_state;
+
+/* What the gas does to it there. */
+typedef struct mpm__spray_pull {
+    mpm_real gas[3], acceleration[3]; /* the gas's velocity; by drag (B 24) and gravity */
+    mpm_real rate;                    /* of the drag */
+} mpm__spray_pull;
+
+/* Pulls on a block of n particles, each in its state. Gas and drag take long to work out, one thing from the other: in
+   loops of their own a processor has several particles in hand. */
+static inline void mpm__spray_pulls(const mpm_spray *s, mpm_real time, const int32_t *i, const mpm__spray_state *at,
+                                    mpm__spray_pull *pull, int n)
 {
     const mpm_spray_desc *d = &s->desc;
-    mpm_real slip[3], rate;
-    int k;
-    mpm__spray_gas_at(s, time, b->x, gas);
-    for (k = 0; k < 3; k++) slip[k] = gas[k] - b->v[k];
-    rate = mpm_spray_drag_rate(mpm__spray_length(slip), b->radius, b->density, d->gas_density, d->gas_viscosity);
-    for (k = 0; k < 3; k++) acceleration[k] = rate * slip[k] + d->gravity[k];
-    return rate;
+    mpm_real slip[3], speed[MPM__SPRAY_BLOCK];
+    int m, k;
+    for (m = 0; m < n; m++) mpm__spray_gas_at(s, time, at[m].x, pull[m].gas);
+    for (m = 0; m < n; m++) {
+        for (k = 0; k < 3; k++) slip[k] = pull[m].gas[k] - at[m].v[k];
+        speed[m] = mpm__spray_length(slip);
+    }
+    for (m = 0; m < n; m++)
+        pull[m].rate = mpm_spray_drag_rate(speed[m], s->radius[i[m]], s->density[i[m]], d->gas_density,
+                                           d->gas_viscosity);
+    for (m = 0; m < n; m++)
+        for (k = 0; k < 3; k++)
+            pull[m].acceleration[k] = pull[m].rate * (pull[m].gas[k] - at[m].v[k]) + d->gravity[k];
 }
 
 /* The exact motion with gas velocity and drag rate held at their values at the start. It cannot
    overshoot, whatever dt; used for dust, whose relaxation time is not long against dt. */
-static inline void mpm__spray_relax(const mpm_spray *s, const mpm_spray_ball *from, const mpm_real *gas,
-                                    mpm_real rate, mpm_spray_ball *to)
+static inline void mpm__spray_relax(const mpm_spray *s, const mpm__spray_state *from, const mpm_real *gas,
+                                    mpm_real rate, mpm__spray_state *to)
 {
     mpm_real dt = s->desc.dt, decay = mpm__spray_exp(-rate * dt);
     int k;
@@ -1439,8 +1559,8 @@ static inline void mpm__spray_relax(const mpm_spray *s, const mpm_spray_ball *fr
    for a particle that did not change, and its loop runs while the error is small; here velocity
    (against the speed) and position (against the way of the step) are judged apart, and the loop runs
    while it is large. */
-static inline int mpm__spray_theta(const mpm_spray *s, const mpm_spray_ball *from, const mpm_real *a0,
-                                        const mpm_real *a1, mpm_spray_ball *to)
+static inline int mpm__spray_theta(const mpm_spray *s, const mpm__spray_state *from, const mpm_real *a0,
+                                   const mpm_real *a1, mpm__spray_state *to)
 {
     mpm_real dt = s->desc.dt, theta = s->desc.theta;
     mpm_real tolerance = mpm__spray_max(s->desc.tolerance, 8 * MPM_EPSILON);
@@ -1460,38 +1580,50 @@ static inline int mpm__spray_theta(const mpm_spray *s, const mpm_spray_ball *fro
     return dv <= tolerance * tolerance * speed && dx <= tolerance * tolerance * way + rounding;
 }
 
-/* One particle over one step; from and to start equal. a is the acceleration, of the start on entry
-   (if known) and of the end on return (if known): the fixed point has just worked it out, to within
-   the tolerance, and the next step begins with it. Halves the work where nothing is hit.
-   Returns MPM_NOT_CONVERGED after falling back to mpm__spray_relax. */
-static inline mpm_status mpm__spray_advance(mpm_spray *s, const mpm_spray_ball *from, mpm_spray_ball *to,
-                                            mpm_real *a, int32_t *known)
+/* The start of one particle's step: a first guess of its end. Returns 1 if the fixed point is to be iterated, 0 if that
+   was all. */
+static inline int mpm__spray_set_off(mpm_spray *s, int32_t i, const mpm__spray_state *from, mpm__spray_state *to)
 {
     const mpm_spray_desc *d = &s->desc;
-    mpm_real time = mpm_spray_time(s), gas[3], start[3], rate = 0;
+    mpm_real *a = s->drag + 3 * i;
+    mpm__spray_pull pull;
     int k;
-    if (!*known) rate = mpm__spray_acceleration(s, time, from, gas, a);
-    *known = 0;
-    if (rate * d->dt > MPM_R(0.5)) { /* B 51 would contract slowly or not at all */
-        mpm__spray_relax(s, from, gas, rate, to);
-        s->tally.exponential++;
-        return MPM_OK;
+    if (!s->known[i]) {
+        mpm__spray_pulls(s, mpm_spray_time(s), &i, from, &pull, 1);
+        memcpy(a, pull.acceleration, sizeof pull.acceleration);
+        if (pull.rate * d->dt > MPM_R(0.5)) { /* B 51 would contract slowly or not at all */
+            mpm__spray_relax(s, from, pull.gas, pull.rate, to);
+            s->tally.exponential++;
+            return 0;
+        }
     }
+    s->known[i] = 0;
     for (k = 0; k < 3; k++) { /* first guess: constant acceleration */
-        start[k] = a[k];
         to->v[k] = from->v[k] + d->dt * a[k];
         to->x[k] = from->x[k] + d->dt * (d->theta * to->v[k] + (1 - d->theta) * from->v[k]);
     }
-    if (!(d->theta > 0)) return MPM_OK; /* explicit: nothing to iterate */
+    return d->theta > 0; /* explicit: nothing to iterate */
+}
+
+/* The fixed point, from the first guess and the pull there. What it ends with is the acceleration at the end of the
+   step, to within the tolerance, and the next step begins with it: halves the work where nothing is hit.
+   Returns MPM_NOT_CONVERGED after falling back to mpm__spray_relax. */
+static inline mpm_status mpm__spray_iterate(mpm_spray *s, int32_t i, const mpm__spray_state *from,
+                                            mpm__spray_state *to, mpm__spray_pull *pull)
+{
+    const mpm_spray_desc *d = &s->desc;
+    mpm_real time = mpm_spray_time(s), *a = s->drag + 3 * i;
+    int k;
     for (k = 0; k < d->iterations; k++) {
-        rate = mpm__spray_acceleration(s, time + d->dt, to, gas, a);
-        if (mpm__spray_theta(s, from, start, a, to)) {
-            *known = rate * d->dt <= MPM_R(0.5);
+        if (k > 0) mpm__spray_pulls(s, time + d->dt, &i, to, pull, 1);
+        if (mpm__spray_theta(s, from, a, pull->acceleration, to)) {
+            memcpy(a, pull->acceleration, sizeof pull->acceleration);
+            s->known[i] = pull->rate * d->dt <= MPM_R(0.5);
             return MPM_OK;
         }
     }
-    rate = mpm__spray_acceleration(s, time, from, gas, start);
-    mpm__spray_relax(s, from, gas, mpm__spray_max(rate, MPM_EPSILON / d->dt), to);
+    mpm__spray_pulls(s, time, &i, from, pull, 1);
+    mpm__spray_relax(s, from, pull->gas, mpm__spray_max(pull->rate, MPM_EPSILON / d->dt), to);
     s->tally.not_converged++;
     return MPM_NOT_CONVERGED;
 }
@@ -1501,25 +1633,55 @@ MPM_API mpm_real mpm_spray_time(const mpm_spray *s)
     return (mpm_real)((double)s->tally.step * (double)s->desc.dt);
 }
 
+/* Velocity at the end of the step and the straight path there. */
+static inline mpm_status mpm__spray_take(mpm_spray *s, int32_t i, const mpm__spray_state *from,
+                                         const mpm__spray_state *to)
+{
+    const mpm_real per_step = 1 / s->desc.dt;
+    mpm_real sum = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        sum += to->v[k] + to->x[k];
+        s->path[3 * i + k] = (to->x[k] - from->x[k]) * per_step;
+        s->v[3 * i + k] = to->v[k];
+    }
+    return mpm_finite(sum) ? MPM_OK : mpm_fail(&s->fault, MPM_ERR_NAN, "velocity of particle", sum, s->id[i]);
+}
+
+/* ... of `count` particles from `first` on. */
+static inline mpm_status mpm__spray_fly_block(mpm_spray *s, int32_t first, int count)
+{
+    mpm__spray_state from[MPM__SPRAY_BLOCK], to[MPM__SPRAY_BLOCK];
+    mpm__spray_pull pull[MPM__SPRAY_BLOCK];
+    int32_t particle[MPM__SPRAY_BLOCK];
+    mpm_status result = MPM_OK, status;
+    int m, k, n = 0;
+    for (m = 0; m < count; m++) {
+        const int32_t i = first + m;
+        for (k = 0; k < 3; k++) {
+            from[n].x[k] = s->x[3 * i + k];
+            from[n].v[k] = s->v[3 * i + k];
+        }
+        particle[n] = i;
+        if (mpm__spray_set_off(s, i, &from[n], &to[n])) n++;
+        else if ((status = mpm__spray_take(s, i, &from[n], &to[n])) < 0) return status;
+    }
+    mpm__spray_pulls(s, mpm_spray_time(s) + s->desc.dt, particle, to, pull, n);
+    for (m = 0; m < n; m++) {
+        if (mpm__spray_iterate(s, particle[m], &from[m], &to[m], &pull[m]) != MPM_OK) result = MPM_NOT_CONVERGED;
+        if ((status = mpm__spray_take(s, particle[m], &from[m], &to[m])) < 0) return status;
+    }
+    return result;
+}
+
 MPM_API mpm_status mpm_spray_fly(mpm_spray *s)
 {
-    mpm_status result = MPM_OK;
-    mpm_real per_step = 1 / s->desc.dt;
+    mpm_status result = MPM_OK, status;
     int32_t i;
-    int k;
-    for (i = 0; i < s->live; i++) {
-        mpm_spray_ball from, to;
-        mpm_real sum = 0;
-        mpm__spray_get(s, i, &from);
-        to = from;
-        if (mpm__spray_advance(s, &from, &to, s->drag + 3 * i, &s->known[i]) != MPM_OK) result = MPM_NOT_CONVERGED;
-        for (k = 0; k < 3; k++) {
-            sum += to.v[k] + to.x[k];
-            s->path[3 * i + k] = (to.x[k] - from.x[k]) * per_step;
-            s->v[3 * i + k] = to.v[k];
-        }
-        if (!mpm_finite(sum))
-            return mpm_fail(&s->fault, MPM_ERR_NAN, "velocity of particle", sum, s->id[i]);
+    for (i = 0; i < s->live; i += MPM__SPRAY_BLOCK) {
+        status = mpm__spray_fly_block(s, i, mpm__spray_block(s, i));
+        if (status < 0) return status;
+        if (status != MPM_OK) result = status;
     }
     s->tally.particle_steps += s->live;
     return result;
@@ -1527,24 +1689,12 @@ MPM_API mpm_status mpm_spray_fly(mpm_spray *s)
 
 /* ---- bin ----------------------------------------------------------------------------------- */
 
-/* The edge of the bins. A particle is binned at the middle of its path, so it is never farther from
-   there than `reach`, and mpm__spray_look widens its box by that: any edge finds every contact.
-   D_max + 2 v dt keeps the box within 27 bins; where particles are sparse, up to four times that
-   spares looking into empty bins. */
+/* The edge of the bins. A particle is binned at the middle of its path, so it is never farther from there than `reach`,
+   and the box around another's path is widened by that: any edge finds every contact. With this one the box meets two
+   bins along each axis, at most. */
 static inline mpm_real mpm__spray_bin_edge(const mpm_spray *s)
 {
-    mpm_real least = mpm__spray_max(2 * s->radius_max + 4 * s->reach, MPM_R(1e-12)), volume = 1;
-    mpm_real low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
-    int32_t i;
-    int k;
-    for (i = 0; i < s->live; i++)
-        for (k = 0; k < 3; k++) {
-            low[k] = i ? mpm__spray_min(low[k], s->middle[3 * i + k]) : s->middle[k];
-            high[k] = i ? mpm__spray_max(high[k], s->middle[3 * i + k]) : s->middle[k];
-        }
-    for (k = 0; k < 3; k++) volume *= (high[k] - low[k]) / least; /* in bins of the least edge */
-    if (!(volume > (mpm_real)s->live)) return least;
-    return least * mpm__spray_min(4, mpm__spray_max(1, mpm__spray_cbrt(volume / (mpm_real)s->live) / 3));
+    return mpm__spray_max(MPM__SPRAY_WIDER * 4 * (s->radius_max + s->reach), MPM_R(1e-12));
 }
 
 MPM_API void mpm_spray_bin(mpm_spray *s)
@@ -1565,8 +1715,7 @@ MPM_API void mpm_spray_bin(mpm_spray *s)
     s->reach = mpm__spray_sqrt(fastest) * dt * (MPM_R(0.5) + 4 * MPM_EPSILON);
     s->radius_max = largest;
     s->heap_count = 0;
-    mpm__spray_grid_clear(&s->bins, mpm__spray_bin_edge(s), mpm__spray_slots(s->live));
-    for (i = 0; i < s->live; i++) mpm__spray_grid_add(&s->bins, s->middle + 3 * i);
+    mpm__spray_rows_fill(&s->rows, mpm__spray_bin_edge(s), mpm__spray_slots(s->live), s->middle, s->live, s->list);
 }
 
 /* ---- contacts in order of time ------------------------------------------------------------- */
@@ -1643,6 +1792,7 @@ static inline mpm_real mpm__spray_meet_plane(const mpm_spray *s, mpm_real gap, m
     mpm_real t;
     if (!(w < 0)) return MPM__SPRAY_NEVER;
     if (s->desc.contact == MPM_SPRAY_OVERLAP) return gap + w * left <= 0 ? left : MPM__SPRAY_NEVER;
+    if (gap > -2 * w * left) return MPM__SPRAY_NEVER; /* too far, by more than rounding */
     t = gap > 0 ? -gap / w : 0;
     return t <= left ? t : MPM__SPRAY_NEVER;
 }
@@ -1713,6 +1863,12 @@ static inline void mpm__spray_path_box(const mpm_spray *s, int32_t i, mpm_real m
     }
 }
 
+/* ... so that whatever particle i may touch in flight is binned in it. */
+static inline void mpm__spray_flight_box(const mpm_spray *s, int32_t i, mpm_real *low, mpm_real *high)
+{
+    mpm__spray_path_box(s, i, MPM__SPRAY_WIDER * (s->radius[i] + s->radius_max + s->reach), low, high);
+}
+
 static inline void mpm__spray_look_at_deposit(mpm_spray *s, int32_t i)
 {
     mpm_real low[3], high[3];
@@ -1737,31 +1893,110 @@ static inline void mpm__spray_look_at_flight(mpm_spray *s, int32_t i, int first_
             if (j != i && !s->gone[j]) mpm__spray_offer_pair(s, i, j);
         return;
     }
-    mpm__spray_path_box(s, i, s->radius[i] + s->radius_max + s->reach, low, high);
-    n = mpm__spray_gather(&s->bins, low, high, s->list);
+    mpm__spray_flight_box(s, i, low, high);
+    n = mpm__spray_rows_gather(&s->rows, low, high, s->list);
     for (k = 0; k < n; k++) {
         j = s->list[k];
         if (j >= first && j != i && !s->gone[j]) mpm__spray_offer_pair(s, i, j);
     }
 }
 
-/* Finds the next contact of particle i. */
-static inline void mpm__spray_look(mpm_spray *s, int32_t i, int first_round)
+static inline void mpm__spray_look_at_fixed(mpm_spray *s, int32_t i)
 {
     int k;
+    for (k = 0; k < s->planes; k++) mpm__spray_offer_plane(s, i, k);
+    mpm__spray_look_at_deposit(s, i);
+}
+
+/* Finds the next contact of particle i, whose path has changed. */
+static inline void mpm__spray_look(mpm_spray *s, int32_t i)
+{
     s->kind[i] = MPM__SPRAY_NOTHING;
     if (s->stamp[i] < s->desc.contacts_max) { /* else it has stopped for this step: see set_out */
-        for (k = 0; k < s->planes; k++) mpm__spray_offer_plane(s, i, k);
-        mpm__spray_look_at_deposit(s, i);
-        mpm__spray_look_at_flight(s, i, first_round);
+        mpm__spray_look_at_fixed(s, i);
+        mpm__spray_look_at_flight(s, i, 0);
     }
     mpm__spray_heap_update(s, i);
+}
+
+#define MPM__SPRAY_ROOM (16 * MPM__SPRAY_BLOCK + 4) /* four places of four rows each, and what is written beyond */
+
+/* Places of rows that the boxes of a block meet. */
+typedef struct mpm__spray_notes {
+    mpm_real low[MPM__SPRAY_BLOCK][3], high[MPM__SPRAY_BLOCK][3];
+    int32_t at[MPM__SPRAY_ROOM], of[MPM__SPRAY_ROOM]; /* the place, whose box */
+    int n;
+} mpm__spray_notes;
+
+/* Notes the places in the bins that box m meets, two or fewer along each axis. Returns 0 if it meets more, or there are
+   too many. Most runs are of no, one or two places, in no order that a processor could guess: so without asking, four
+   are written, and those that are there are counted. */
+static inline int mpm__spray_note(mpm__spray_notes *p, const mpm_spray_rows *r, int m)
+{
+    int32_t a[3], b[3];
+    int d, c, n = p->n;
+    for (d = 0; d < 3; d++) {
+        a[d] = mpm__spray_cell(p->low[m][d], r->per_cell);
+        b[d] = mpm__spray_cell(p->high[m][d], r->per_cell);
+        if (b[d] - a[d] > 1) return 0;
+    }
+    for (c = 0; c < 4; c++) {
+        const int again = ((c & 1) & (a[0] == b[0])) | ((c >> 1) & (a[1] == b[1]));
+        const uint32_t from = (mpm__spray_row(c & 1 ? b[0] : a[0], c >> 1 ? b[1] : a[1]) + (uint32_t)a[2]) & r->mask;
+        const uint32_t to = from + (uint32_t)(b[2] - a[2]) + 1;
+        int32_t at, run;
+        if (to > r->mask + 1) return 0; /* the run goes on at the first slot */
+        at = r->start[from];
+        run = (1 - again) * (r->start[to] - at);
+        if (run > 4) return 0;
+        for (d = 0; d < 4; d++) {
+            p->at[n + d] = at + d;
+            p->of[n + d] = m;
+        }
+        n += run;
+    }
+    p->n = n;
+    return 1;
+}
+
+/* Offers the pairs that were noted, to the lower number of the two, if the higher is binned in the lower's box. */
+static inline void mpm__spray_offer_noted(mpm_spray *s, int32_t first, mpm__spray_notes *p)
+{
+    const mpm_spray_rows *r = &s->rows;
+    int k, kept = 0;
+    for (k = 0; k < p->n; k++) {
+        const int32_t at = p->at[k], m = p->of[k];
+        const mpm_real *x = r->place + 3 * at, *low = p->low[m], *high = p->high[m];
+        p->at[kept] = at;
+        p->of[kept] = m;
+        kept += (r->particle[at] > first + m) & (x[0] >= low[0]) & (x[0] <= high[0]) & (x[1] >= low[1]) &
+                (x[1] <= high[1]) & (x[2] >= low[2]) & (x[2] <= high[2]);
+    }
+    for (k = 0; k < kept; k++) mpm__spray_offer_pair(s, first + p->of[k], r->particle[p->at[k]]);
+}
+
+/* First contacts of `count` particles from `first` on. */
+static inline void mpm__spray_find_block(mpm_spray *s, int32_t first, int count)
+{
+    mpm__spray_notes p;
+    int m;
+    p.n = 0;
+    for (m = 0; m < count; m++) {
+        const int32_t i = first + m;
+        mpm__spray_look_at_fixed(s, i);
+        mpm__spray_flight_box(s, i, p.low[m], p.high[m]);
+        if (s->desc.search == MPM_SPRAY_ALL_PAIRS || !mpm__spray_note(&p, &s->rows, m))
+            mpm__spray_look_at_flight(s, i, 1);
+    }
+    mpm__spray_offer_noted(s, first, &p);
+    for (m = 0; m < count; m++) mpm__spray_heap_update(s, first + m);
 }
 
 MPM_API void mpm_spray_find(mpm_spray *s)
 {
     int32_t i;
-    for (i = 0; i < s->live; i++) mpm__spray_look(s, i, 1);
+    for (i = 0; i < s->live; i += MPM__SPRAY_BLOCK)
+        mpm__spray_find_block(s, i, mpm__spray_block(s, i));
 }
 
 /* ---- resolve ------------------------------------------------------------------------------- */
@@ -1849,10 +2084,16 @@ static inline void mpm__spray_deposit_enter(mpm_spray *s, int32_t host)
 /* Tells those in flight that something now stands in their way. */
 static inline void mpm__spray_warn(mpm_spray *s, int32_t host)
 {
-    const mpm_real margin = s->deposit_radius[host] + s->radius_max + s->reach;
+    const mpm_real margin = MPM__SPRAY_WIDER * (s->deposit_radius[host] + s->radius_max + s->reach);
+    mpm_real low[3], high[3];
     int32_t n, k;
+    int d;
     if (s->desc.deposit == MPM_SPRAY_DEPOSIT_IGNORE) return;
-    n = mpm__spray_list_around(s, &s->bins, s->deposit_x + 3 * host, margin);
+    for (d = 0; d < 3; d++) {
+        low[d] = s->deposit_x[3 * host + d] - margin;
+        high[d] = s->deposit_x[3 * host + d] + margin;
+    }
+    n = mpm__spray_rows_gather(&s->rows, low, high, s->list);
     for (k = 0; k < n; k++) {
         int32_t j = s->list[k];
         if (s->gone[j]) continue;
@@ -1996,20 +2237,20 @@ MPM_API void mpm_spray_resolve(mpm_spray *s)
     while (s->heap_count > 0) {
         int32_t i = s->heap[0], with = s->with[i], kind = s->kind[i];
         if (kind == MPM__SPRAY_PAIR && s->stamp[with] != s->with_stamp[i]) {
-            mpm__spray_look(s, i, 0); /* the partner has been hit meanwhile */
+            mpm__spray_look(s, i); /* the partner has been hit meanwhile */
             continue;
         }
         mpm__spray_go_to(s, i, s->when[i]);
         if (kind == MPM__SPRAY_PAIR) {
             mpm__spray_go_to(s, with, s->when[i]);
             mpm__spray_hit_pair(s, i, with);
-            mpm__spray_look(s, with, 0);
+            mpm__spray_look(s, with);
         } else if (kind == MPM__SPRAY_PLANE) {
             mpm__spray_hit_plane(s, i, with);
         } else {
             mpm__spray_hit_deposit(s, i, with);
         }
-        if (!s->gone[i]) mpm__spray_look(s, i, 0);
+        if (!s->gone[i]) mpm__spray_look(s, i);
     }
 }
 

@@ -117,6 +117,19 @@ static int write_summary(const impact *s, const impact_result *r, const output *
     return 1;
 }
 
+/* The table's words, a line each. */
+static void print_words(const impact *s)
+{
+    if (s->surfaces.surfaces > 0) {
+        printf("\n  bonded: of the area that touched, the part with adhesion that is not spent\n");
+        printf("  held:   markers that adhesion drew to the other surface in the last step\n");
+        return;
+    }
+    printf("\n  PBCP: of the surface that touched the other body, the part whose bond variable D is 1 or more\n");
+    printf("  ABP:  D of that surface on the mean\n");
+    printf("  held: pairs of nodes that the bond kept from parting in the last step\n");
+}
+
 static void print_table(const impact *s, const impact_case *c, const impact_result *r, double cpu)
 {
     const mpm_world *w = &s->world;
@@ -165,6 +178,7 @@ static void print_table(const impact *s, const impact_case *c, const impact_resu
            (long long)w->steps, (double)s->dt * 1e6, cpu,
            cpu > 0 ? 1e-6 * (double)w->steps * (double)r->all.points / cpu : 0,
            (double)mpm_bytes_used(w) / (double)r->all.points);
+    print_words(s);
 }
 
 /* Time integration: one call per phase. Returns 1; 0 after a message; -1 when stopped before, with a checkpoint. */
@@ -172,6 +186,7 @@ static int run(impact *s, const impact_case *c, output *o, impact_stops *stops)
 {
     mpm_world *w = &s->world;
     int status = 1;
+    stop_listen();
     output_start(o, w);
     for (;;) {
         if (output_due(o, w, s->steps) && !write_frame(s, c, o)) return 0;
@@ -244,7 +259,7 @@ static int carry_out(int argc, char **argv)
     int parsed, status, resume = 0;
     output_options(&o, options, &n);
     option_add(options, &n, "checkpoint", OPTION_REAL, &stops.seconds,
-               "CPU seconds from one checkpoint.bin in the output folder to the next; 0: none");
+               "CPU seconds from one checkpoint.bin in the output folder to the next; 0: when stopped");
     option_add(options, &n, "stop-after", OPTION_INTEGER, &stops.after,
                "write one after so many steps and stop; 0: never");
     option_add(options, &n, "resume", OPTION_FLAG, &resume, "go on from it, with the options that it was written with");
@@ -255,10 +270,10 @@ static int carry_out(int argc, char **argv)
         !impact_begin(&s, &c, message, sizeof message))
         return !complain(message);
     status = start(&s, &c, &o, &stops, resume) ? run(&s, &c, &o, &stops) : 0;
-    if (status < 0) impact_stopped(&s, "add --resume");
+    if (status < 0) print_again(argc, argv, "--resume", (long long)s.world.steps, (long long)s.steps);
     if (status > 0) status = finish(&s, &c, &o, options, n);
     impact_end(&s);
-    return status > 0 ? 0 : status < 0 ? 3 : 1;
+    return status > 0 ? 0 : status < 0 ? STOPPED : 1;
 }
 
 int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

@@ -73,22 +73,17 @@ static inline int impact_save(impact *s, const impact_case *c, output *out)
     return ok || report(&fault, path);
 }
 
-/* Before a step: a checkpoint, if one is due. Returns 1; 0 after a message; -1: stop here, with one. */
+/* Before a step: a checkpoint, if one is due or the end is asked for. Returns 1; 0 after a message; -1: stop here, with
+   one. */
 static inline int impact_goes_on(impact *s, const impact_case *c, output *out, impact_stops *k)
 {
-    if (k->after > 0 && s->world.steps - out->first >= k->after) {
+    if (stop_asked() || (k->after > 0 && s->world.steps - out->first >= k->after)) {
         output_cpu(out);
         return impact_save(s, c, out) ? -1 : 0;
     }
     if (!(k->seconds > 0) || output_cpu(out) - k->saved < k->seconds) return 1;
     k->saved = out->cpu;
     return impact_save(s, c, out);
-}
-
-/* The end of a stopped run, in words. */
-static inline void impact_stopped(const impact *s, const char *how)
-{
-    printf("stopped at step %lld of %lld; %s to go on\n", (long long)s->world.steps, (long long)s->steps, how);
 }
 
 static inline void impact_resumed(const impact *s, const output *out)

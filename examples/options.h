@@ -3,6 +3,8 @@
 #ifndef OPTIONS_H
 #define OPTIONS_H
 
+#include "mpm.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -111,6 +113,7 @@ static inline void options_help(const char *program, const char *about, const op
         if (o[i].type == OPTION_WORD) printf("%.*s: ", words_shown(o[i].words), o[i].words);
         printf("%s [%s]\n", o[i].help, option_text(&o[i], number));
     }
+    printf("  --%-20s %s\n", "version", "of the library");
     printf("  --%-20s %s\n", "help", "this text");
 }
 
@@ -141,7 +144,7 @@ bad:
     return -1;
 }
 
-/* Reads argv into the table. Returns 0 to go on, 1 after --help, -1 after an error message. */
+/* Reads argv into the table. Returns 0 to go on, 1 after --help or --version, -1 after an error message. */
 static inline int options_parse(int argc, char **argv, const char *about, const option *o, int n)
 {
     int a, i;
@@ -149,6 +152,10 @@ static inline int options_parse(int argc, char **argv, const char *about, const 
         const char *name = argv[a];
         if (!strcmp(name, "--help") || !strcmp(name, "-h")) {
             options_help(argv[0], about, o, n);
+            return 1;
+        }
+        if (!strcmp(name, "--version")) {
+            printf("mpm.h %s\n", mpm_version());
             return 1;
         }
         i = strncmp(name, "--", 2) ? n : option_find(o, n, name + 2);

@@ -8,8 +8,7 @@
 #include "mpm_draw.h"
 #include "mpm_surface.h"
 #include "program.h"
-
-#include <time.h>
+#include "terminal.h"
 
 /* The output of one run. The first members are set by the program, the others by the routines below. */
 typedef struct output {
@@ -22,7 +21,8 @@ typedef struct output {
     int64_t frame;              /* frames written */
     double cpu, earlier;        /* seconds without the writing: by output_cpu; when output_start was called */
     int64_t first;              /* steps when output_start was called */
-    clock_t begun, shown, writing;
+    clock_t begun, writing;
+    progress line;
 } output;
 
 static inline output output_of(const char *folder, const char *name, const char *length, const char *time, double rate)
@@ -68,7 +68,8 @@ static inline int output_begin(output *o)
 /* Starts the clock, before the first step or where an earlier run was left. */
 static inline void output_start(output *o, const mpm_world *w)
 {
-    o->begun = o->shown = clock();
+    progress_begin(&o->line, o->quiet);
+    o->begun = clock();
     o->writing = 0;
     o->earlier = o->cpu;
     o->first = w->steps;
@@ -360,13 +361,12 @@ static inline int output_frame(output *o, const mpm_world *w, const mpm_io_field
 
 /* ---- progress ------------------------------------------------------------------------------ */
 
-/* The progress line, about twice a second of CPU time. */
+/* The progress line, once a second. */
 static inline void output_progress(output *o, const mpm_world *w, int64_t steps)
 {
     mpm_io_progress p;
     char line[160];
-    if (o->quiet || (double)(clock() - o->shown) < 0.5 * (double)CLOCKS_PER_SEC) return;
-    o->shown = clock();
+    if (!progress_due(&o->line, (double)w->steps / (double)steps)) return;
     memset(&p, 0, sizeof p);
     p.step = w->steps;
     p.first_step = o->first;
@@ -374,15 +374,11 @@ static inline void output_progress(output *o, const mpm_world *w, int64_t steps)
     p.time = (double)w->time * 1e3;
     p.time_unit = o->time;
     p.points = (double)w->points.count;
-    p.elapsed = (double)(clock() - o->begun) / (double)CLOCKS_PER_SEC;
+    p.elapsed = progress_elapsed(&o->line);
     mpm_io_progress_text(line, sizeof line, &p);
-    fprintf(stderr, "\r%-90s", line);
-    fflush(stderr);
+    progress_show(&o->line, line);
 }
 
-static inline void output_progress_end(const output *o)
-{
-    if (!o->quiet) fprintf(stderr, "\r%-90s\r", "");
-}
+static inline void output_progress_end(const output *o) { progress_end(&o->line); }
 
 #endif

@@ -100,7 +100,10 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
     mpm_world *w = &s->world;
     const int whole = impact_copies(s);
     mpm_interface met;
+    progress line;
+    progress_begin(&line, o->quiet);
     do {
+        progress_part(&line, "pull, if they do not part before:", p->separation / o->distance);
         if (mpm_locate(w, s->dt) < 0) return report(&w->fault, "locate");
         mpm_p2g(w);
         mpm_forces(w);
@@ -117,7 +120,7 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
             mpm_io_csv_integer(table, met.nodes);
             mpm_io_csv_integer(table, met.bonded);
             mpm_io_csv_integer(table, met.held);
-            if (met.nodes == 0) return 1;
+            if (met.nodes == 0) break;
         }
         mpm_g2p(w);
         mpm_musl(w);
@@ -126,6 +129,7 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
             return report(&s->surfaces.fault, "surfaces");
         mpm_move(w);
     } while (p->separation < o->distance && c->count < c->room);
+    progress_end(&line);
     return 1;
 }
 
@@ -202,6 +206,19 @@ static int write_summary(const impact *s, const pull_case *o, const impact_resul
     return mpm_io_json_end(&j, &fault) >= 0 || report(&fault, path);
 }
 
+/* The impact. Returns 1, or 0 after a message. */
+static int strike(impact *s, const pull_case *o)
+{
+    progress line;
+    progress_begin(&line, o->quiet);
+    while (s->world.steps < s->steps) {
+        if (impact_step(s) < 0) return report(&s->world.fault, "impact");
+        progress_part(&line, "impact", (double)s->world.steps / (double)s->steps);
+    }
+    progress_end(&line);
+    return 1;
+}
+
 /* Impact and pull. The world is that of s; c gets room for the samples. */
 static int run(impact *s, const impact_case *ic, const pull_case *o, curve *c, const option *options, int n)
 {
@@ -212,8 +229,7 @@ static int run(impact *s, const impact_case *ic, const pull_case *o, curve *c, c
     mpm_pull p;
     char path[PATH_BYTES], grip[80];
     int drawn;
-    while (s->world.steps < s->steps)
-        if (impact_step(s) < 0) return report(&s->world.fault, "impact");
+    if (!strike(s, o)) return 0;
     r = impact_measure(s, ic);
     met = meet(s);
     memset(&p, 0, sizeof p);

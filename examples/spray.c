@@ -10,19 +10,18 @@
 #include "mpm_spray.h"
 #include "mpm_io.h"
 
-#include <time.h>
-
 #include "program.h"
 #include "spray_view.h"
+#include "terminal.h"
 
 /* ---- options ------------------------------------------------------------------------------- */
 
 typedef struct settings {
     const char *gas, *release, *gamma12, *restitution, *contact, *deposit, *criterion, *out, *restart;
     double speed, alpha, friction, median_radius, shape, size_min, size_max, feed, dt, time, theta, box;
-    double stand_off, critical, erosion;
+    double stand_off, critical, erosion, checkpoint;
     int64_t batch, particles, steps, seed, frames;
-    int quiet;
+    int quiet, resume;
 } settings;
 
 static settings settings_default(void)
@@ -57,7 +56,7 @@ static settings settings_default(void)
     return o;
 }
 
-#define OPTION_COUNT 31
+#define OPTION_COUNT 33
 #define CRITERIA "adhesion|window"
 
 static int options_of(option *o, settings *s)
@@ -92,6 +91,8 @@ static int options_of(option *o, settings *s)
     option_add(o, &n, "out", OPTION_TEXT, &s->out, "folder for the results");
     option_add(o, &n, "frames", OPTION_INTEGER, &s->frames, "VTK files over the run; 0: none");
     option_add(o, &n, "restart", OPTION_TEXT, &s->restart, "go on from this checkpoint.bin to --steps or --time");
+    option_add(o, &n, "resume", OPTION_FLAG, &s->resume, "go on from the one in the folder");
+    option_add(o, &n, "checkpoint", OPTION_REAL, &s->checkpoint, "CPU seconds from one to the next; 0: at the end");
     option_add(o, &n, "quiet", OPTION_FLAG, &s->quiet, "no progress, no table");
     return n;
 }
@@ -175,6 +176,7 @@ static int parse_length(const settings *o, mpm_spray_desc *d, int64_t *steps)
     if (o->steps < 0) return bad_number("steps", (double)o->steps, "0 or more");
     if (o->steps == 0 && !(o->time > 0 && o->time < 1e9)) return bad_number("time", o->time, "above 0");
     if (o->frames < 0) return bad_number("frames", (double)o->frames, "0 or more");
+    if (!(o->checkpoint >= 0)) return bad_number("checkpoint", o->checkpoint, "0 or more");
     if (o->batch < 1 || o->batch > 1000000) return bad_number("batch", (double)o->batch, "1 to 1e6");
     if (o->particles < 0) return bad_number("particles", (double)o->particles, "0 or more");
     if (!(o->dt > 0)) return bad_number("dt", o->dt, "above 0");
@@ -317,7 +319,7 @@ static mpm_status write_pictures(const char *folder, const mpm_spray *s, spray_c
 /* The options that do not make the spray: a run that goes on may have others. */
 static int is_free(const char *name)
 {
-    static const char *const word[] = {"steps", "time", "out", "restart", "frames", "quiet"};
+    static const char *const word[] = {"steps", "time", "out", "restart", "resume", "checkpoint", "frames", "quiet"};
     size_t k;
     for (k = 0; k < sizeof word / sizeof *word; k++)
         if (!strcmp(name, word[k])) return 1;
@@ -560,7 +562,8 @@ static mpm_status write_summary(const char *folder, const result *r, int count, 
     }
     mpm_io_json_open(&j, "options");
     for (k = 0; k < options; k++) {
-        if (!strcmp(o[k].name, "out") || !strcmp(o[k].name, "restart") || !strcmp(o[k].name, "quiet")) continue;
+        static const char places[] = "out|restart|resume|checkpoint|quiet";
+        if (word_place(places, o[k].name) >= 0) continue;
         mpm_io_json_string(&j, o[k].name, option_text(&o[k], number));
     }
     mpm_io_json_close(&j);
@@ -569,7 +572,28 @@ static mpm_status write_summary(const char *folder, const result *r, int count, 
 
 /* ---- the run ------------------------------------------------------------------------------- */
 
-static void show_progress(const mpm_spray *s, int64_t first, int64_t steps, double elapsed)
+/* What a run writes into, and what its files say of it. */
+typedef struct records {
+    mpm_io_csv *impacts;
+    files *past;
+    const option *row;
+    int rows;
+    const char *note;
+} records;
+
+/* A checkpoint between two steps. The table must be whole beside it: it is ended, and begun again with its rows. */
+static mpm_status save(mpm_spray *s, const settings *o, const records *r, mpm_fault *fault)
+{
+    char path[PATH_BYTES];
+    mpm_status status = mpm_io_csv_end(r->impacts, fault);
+    if (status >= 0) status = note_impacts(r->past, o, s, fault);
+    file_in(o->out, "checkpoint.bin", path, sizeof path);
+    if (status >= 0) status = write_checkpoint(path, s, r->past, r->row, r->rows, fault);
+    if (status < 0 || begin_impacts(r->impacts, o, s, r->past, r->note)) return status;
+    return mpm_fail(fault, MPM_ERR_FILE, "impacts.csv: cannot be begun again", 0, -1);
+}
+
+static void show_progress(const progress *line, const mpm_spray *s, int64_t first, int64_t steps)
 {
     mpm_io_progress p;
     char text[160];
@@ -580,36 +604,43 @@ static void show_progress(const mpm_spray *s, int64_t first, int64_t steps, doub
     p.time = (double)mpm_spray_time(s) * 1e3;
     p.time_unit = "ms";
     p.points = s->live;
-    p.elapsed = elapsed;
+    p.elapsed = progress_elapsed(line);
     mpm_io_progress_text(text, sizeof text, &p);
-    fprintf(stderr, "\r%-78s", text);
-    fflush(stderr);
+    progress_show(line, text);
 }
 
-/* Steps to the end, a frame every so often. *cpu: seconds spent in steps. Returns the status. */
-static mpm_status run(mpm_spray *s, const settings *o, int64_t steps, spray_columns *c, const char *note, double *cpu,
+static double seconds(clock_t since) { return (double)(clock() - since) / (double)CLOCKS_PER_SEC; }
+
+/* Steps to the end, or until asked to stop; a frame and a checkpoint every so often. *cpu: seconds spent in steps.
+   Returns the status. */
+static mpm_status run(mpm_spray *s, const settings *o, int64_t steps, spray_columns *c, const records *r, double *cpu,
                       mpm_fault *fault)
 {
     const int64_t first = s->tally.step, every = steps_per_frame(o, steps);
     mpm_status status = MPM_OK;
+    progress line;
     clock_t begin = clock();
-    time_t shown = time(NULL), started = shown;
-    while (s->tally.step < steps && status >= 0) {
+    double saved = 0;
+    stop_listen();
+    progress_begin(&line, o->quiet);
+    while (s->tally.step < steps && status >= 0 && !stop_asked()) {
         int64_t step;
         if ((status = mpm_spray_step(s)) < 0) *fault = s->fault;
         step = s->tally.step;
         if (status >= 0 && (step % every == 0 || (step == steps && o->frames > 0))) {
-            *cpu += (double)(clock() - begin) / CLOCKS_PER_SEC;
-            status = write_frame(o->out, s, c, note, fault);
+            *cpu += seconds(begin);
+            status = write_frame(o->out, s, c, r->note, fault);
             begin = clock();
         }
-        if (!o->quiet && step % 200 == 0 && time(NULL) != shown) {
-            shown = time(NULL);
-            show_progress(s, first, steps, difftime(shown, started));
+        if (status >= 0 && o->checkpoint > 0 && *cpu + seconds(begin) - saved >= o->checkpoint) {
+            saved = *cpu += seconds(begin);
+            status = save(s, o, r, fault);
+            begin = clock();
         }
+        if (progress_due(&line, (double)step / (double)steps)) show_progress(&line, s, first, steps);
     }
-    *cpu += (double)(clock() - begin) / CLOCKS_PER_SEC;
-    if (!o->quiet) fprintf(stderr, "\r%78s\r", "");
+    *cpu += seconds(begin);
+    progress_end(&line);
     return status;
 }
 
@@ -629,17 +660,17 @@ static void describe_in_words(const option *o, int n, char *note, size_t room)
     }
 }
 
-static mpm_status write_all(mpm_spray *s, const settings *o, files *past, const option *row, int rows,
-                            spray_columns *c, const char *note, int64_t before, double cpu, mpm_fault *fault)
+static mpm_status write_all(mpm_spray *s, const settings *o, const records *of, spray_columns *c, int64_t before,
+                            double cpu, mpm_fault *fault)
 {
     char path[PATH_BYTES];
     result r[RESULTS];
     int n = results(r, s, before, cpu), k;
-    mpm_status status = write_summary(o->out, r, n, row, rows, fault);
-    if (status >= 0) status = write_pictures(o->out, s, c, note, fault);
-    if (status >= 0) status = note_impacts(past, o, s, fault);
+    mpm_status status = write_summary(o->out, r, n, of->row, of->rows, fault);
+    if (status >= 0) status = write_pictures(o->out, s, c, of->note, fault);
+    if (status >= 0) status = note_impacts(of->past, o, s, fault);
     file_in(o->out, "checkpoint.bin", path, sizeof path);
-    if (status >= 0) status = write_checkpoint(path, s, past, row, rows, fault);
+    if (status >= 0) status = write_checkpoint(path, s, of->past, of->row, of->rows, fault);
     if (status < 0 || o->quiet) return status;
     for (k = 0; k < n; k++) printf("%-44s %14.6g %s\n", r[k].text, r[k].value, r[k].unit);
     printf("%-44s %14.6g %s\n", "memory", (double)s->bytes / 1e6, "MB");
@@ -660,11 +691,15 @@ static int carry_out(int argc, char **argv)
     mpm_io_csv impacts;
     mpm_fault fault = {MPM_OK, NULL, 0, -1};
     files past = {0, 0, 0};
+    char path[PATH_BYTES];
     spray_columns columns;
+    records of;
     mpm_status status;
     int64_t before, steps = 0;
     double cpu = 0;
+    int stopped;
     if (parsed) return parsed > 0 ? 0 : 1;
+    if (o.resume) o.restart = file_in(o.out, "checkpoint.bin", path, sizeof path);
     if (describe(&o, &d, &window, &steps)) return 1;
     d.touch = write_impact;
     d.touch_user = &impacts;
@@ -681,13 +716,20 @@ static int carry_out(int argc, char **argv)
     }
     if (spray_columns_init(&columns, (size_t)d.capacity)) return fprintf(stderr, "error: no memory\n"), 1;
     if (!begin_files(&impacts, &o, &s, &past, steps, note)) return 1;
-    status = run(&s, &o, steps, &columns, note, &cpu, &fault);
+    of.impacts = &impacts;
+    of.past = &past;
+    of.row = row;
+    of.rows = rows;
+    of.note = note;
+    status = run(&s, &o, steps, &columns, &of, &cpu, &fault);
     if (mpm_io_csv_end(&impacts, status < 0 ? NULL : &fault) < 0 && status >= 0) return failed(&fault);
-    if (status >= 0) status = write_all(&s, &o, &past, row, rows, &columns, note, before, cpu, &fault);
+    if (status >= 0) status = write_all(&s, &o, &of, &columns, before, cpu, &fault);
     if (status < 0) failed(&fault);
+    stopped = status >= 0 && s.tally.step < steps;
+    if (stopped) print_again(argc, argv, "--resume", (long long)s.tally.step, (long long)steps);
     spray_columns_free(&columns);
     mpm_spray_free(&s);
-    return status < 0;
+    return status < 0 ? 1 : stopped ? STOPPED : 0;
 }
 
 int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

@@ -9,7 +9,7 @@
    The loop in run() is the method, one call per phase. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "taylor_case.h"
-#include "output.h"
+#include "restart.h"
 
 /* Plastic strain and temperature of the section through the axis. */
 static void describe_picture(const taylor *s, const taylor_case *c, const output *o, output_picture *p)
@@ -105,14 +105,16 @@ static void print_table(const taylor *s, const taylor_case *c, const taylor_resu
            (long long)w->retired, (long long)w->steps, (double)s->dt * 1e6, cpu);
 }
 
-/* Time integration: one call per phase. */
-static int run(taylor *s, const taylor_case *c, output *o)
+/* Time integration: one call per phase. Returns 1; 0 after a message; -1 when stopped before, with a checkpoint. */
+static int run(taylor *s, const taylor_case *c, output *o, restart *again)
 {
     mpm_world *w = &s->world;
+    int status = 1;
     output_start(o, w);
     for (;;) {
         if (output_due(o, w, s->steps) && !write_frame(s, c, o)) return 0;
         if (w->steps >= s->steps) break;
+        if ((status = restart_goes_on(again)) <= 0) break;
 
         if (mpm_locate(w, s->dt) < 0) return report(&w->fault, "locate"); /* points in cell order, their nodes */
         mpm_p2g(w);                          /* mass and momentum to the nodes */
@@ -127,10 +129,10 @@ static int run(taylor *s, const taylor_case *c, output *o)
     }
     output_progress_end(o);
     output_cpu(o);
-    return 1;
+    return status;
 }
 
-/* Everything that is written at the end. */
+/* Everything that is written at the end, or where the run is stopped. */
 static int finish(const taylor *s, const taylor_case *c, output *o, const option *options, int n)
 {
     taylor_row *row = (taylor_row *)malloc((size_t)taylor_rows(s) * sizeof *row);
@@ -172,19 +174,27 @@ static int carry_out(int argc, char **argv)
     taylor_case c = taylor_case_default();
     output o = output_of("build/taylor-out", "taylor", "mm", "us", 1e-3);
     option options[20];
-    int n = options_of(&c, options), parsed, ok;
+    restart again;
+    int n = options_of(&c, options), of_case = n, of_run, parsed, status;
     const char *about = "A metal cylinder hits a rigid wall end on: Taylor's test.\n"
                         "Writes summary.json, profile.csv, taylor.png, taylor.pvd (ParaView) and frames.";
     char message[300];
     taylor s;
+    memset(&again, 0, sizeof again);
     output_options(&o, options, &n);
+    of_run = n;
+    restart_options(&again, options, &n);
     parsed = options_parse(argc, argv, about, options, n);
     if (parsed) return parsed < 0 ? 1 : 0;
-    if (!output_check(&o, message, sizeof message) || !taylor_begin(&s, &c, message, sizeof message))
+    if (!output_check(&o, message, sizeof message) || !restart_check(&again, message, sizeof message) ||
+        !taylor_begin(&s, &c, message, sizeof message))
         return !complain(message);
-    ok = output_begin(&o) && run(&s, &c, &o) && finish(&s, &c, &o, options, n);
+    status = restart_begin(&again, &s.world, &o, &s.start, s.dt, options, of_case) ? run(&s, &c, &o, &again) : 0;
+    if (status != 0 && !finish(&s, &c, &o, options, of_run)) status = 0;
+    if (status < 0) print_again(argc, argv, "--resume", (long long)s.world.steps, (long long)s.steps);
+    if (status > 0) restart_end(&again);
     mpm_free(&s.world);
-    return ok ? 0 : 1;
+    return status > 0 ? 0 : status < 0 ? STOPPED : 1;
 }
 
 int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

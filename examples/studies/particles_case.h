@@ -589,6 +589,7 @@ static inline int particles_run(impact *s, particles_case *q)
     const mpm_world *w = &s->world;
     impact_stops stops = {PARTICLES_CHECKPOINT, q->stop_after, q->out.cpu};
     int status = 1;
+    stop_listen();
     output_start(&q->out, w);
     for (;;) {
         if (output_due(&q->out, w, s->steps) && !particles_frame(s, q)) return 0;
@@ -611,7 +612,8 @@ static inline int particles_main(particles_case *q, const option *o, int n)
     int status;
     if (!particles_begin(&s, q, message, sizeof message)) return !complain(message);
     status = particles_resume(&s, q) ? particles_run(&s, q) : 0;
-    if (status < 0) impact_stopped(&s, "run again");
+    if (status < 0)
+        printf("stopped at step %lld of %lld; run again to go on\n", (long long)s.world.steps, (long long)s.steps);
     if (status > 0) {
         particles_report(&s, q, r);
         status = particles_table(q, r) && particles_pairs(&s, q) && particles_summary(&s, q, r, o, n);
@@ -621,7 +623,7 @@ static inline int particles_main(particles_case *q, const option *o, int n)
         if (!q->out.quiet) particles_print(q, r, &s);
     }
     impact_end(&s);
-    return status > 0 ? 0 : status < 0 ? 3 : 1;
+    return status > 0 ? 0 : status < 0 ? STOPPED : 1;
 }
 
 /* The options that both programs have. */

@@ -10,11 +10,11 @@
 #include "mpm_spray.h"
 
 #include <stdarg.h>
-#include <time.h>
 
 #include "plots.h"
 #include "program.h"
 #include "spray_view.h"
+#include "terminal.h"
 
 static const char *const program = "examples/studies/spray_study.c";
 
@@ -65,8 +65,8 @@ typedef struct study {
     double time;   /* of a run [s] */
     int seeds;
     const char *log, *data, *report, *budget;
-    int quiet, planned, done;
-    time_t started;
+    int quiet, planned, done, fresh;
+    progress line;
 } study;
 
 static int same_case(const run_case *a, const run_case *b)
@@ -260,6 +260,17 @@ static const record *find(const study *st, const run_case *c)
     return NULL;
 }
 
+/* "run 12 of 40, left 2:10", by the runs that were made now. */
+static void show(study *st)
+{
+    const double left = progress_elapsed(&st->line) / st->fresh * (st->planned - st->done);
+    char line[100];
+    if (!progress_due(&st->line, (double)st->done / st->planned)) return;
+    snprintf(line, sizeof line, "run %d of %d, left %.0f:%02d", st->done, st->planned, floor(left / 60),
+             (int)fmod(left, 60));
+    progress_show(&st->line, line);
+}
+
 /* Does a case unless it has been done. Returns 0, or -1 after a message. */
 static int need(study *st, const run_case *c)
 {
@@ -270,11 +281,8 @@ static int need(study *st, const run_case *c)
     r->c = *c;
     if (run_one(c, r->value) || log_write(st, r)) return -1;
     st->count++;
-    if (!st->quiet) {
-        double gone = difftime(time(NULL), st->started);
-        fprintf(stderr, "\rrun %d of %d, left %.0f s   ", st->done, st->planned,
-                gone / st->done * (st->planned - st->done));
-    }
+    st->fresh++;
+    show(st);
     return 0;
 }
 
@@ -330,7 +338,7 @@ static int plan(study *st)
     st->planned = ALPHAS * plan_alpha(st, alphas[0], 1);
     for (k = 0; k < ALPHAS; k++)
         if (plan_alpha(st, alphas[k], 0) < 0) return -1;
-    if (!st->quiet) fprintf(stderr, "\r%40s\r", "");
+    progress_end(&st->line);
     return 0;
 }
 
@@ -810,11 +818,19 @@ static int write_report(const study *st, const long_run *l, double once, double 
                "[B-9](data/spray_b9.png), [B-10](data/spray_b10.png).\n\n");
     fprintf(f, "## Cost\n\n| what | asked | measured |\n|---|---|---|\n"
                "| the run of 50 050 particles, CPU s | < 120 | %.1f |\n| its memory, MB | < 100 | %.1f |\n"
-               "| simulated particle-seconds per CPU second | >= 20 | %.1f |\n"
+               "| simulated particle-seconds per CPU second | >= 40 | %.1f |\n"
                "| iterations that did not converge | - | %lld |\n"
                "| ns per particle-step, feed 1e5 /s | - | %.0f |\n"
-               "| the same at feed 8e5 /s | < 1.4 times | %.0f, %.2f times |\n",
+               "| the same at feed 8e5 /s | < 1.15 times | %.0f, %.2f times |\n",
             l->cpu, l->megabytes, l->per_second, (long long)l->not_converged, once, eightfold, eightfold / once);
+    fprintf(f, "\nA particle-step is one particle moved by one step of %g us. It costs one evaluation of the gas and "
+               "of the drag where the particle will be, for the fixed point starts so well, and the search for what it "
+               "meets. Particles fly in blocks, so that a processor has several of these long chains of arithmetic in "
+               "hand. Every step they are sorted into rows of bins, and the bins around a path are read without asking "
+               "how many are in them; only where two are is a contact looked for. At eight times the feed there are "
+               "eight times as many neighbours, still less than one for most, and more memory to walk through. "
+               "Contacts are exact: `tests/53_spray_search.c` compares with every pair, byte by byte.\n",
+            1e6 * (double)mpm_spray_desc_default().dt);
     if (mpm_io_close(&file, &fault) >= 0) return 0;
     return fprintf(stderr, "error: cannot write %s\n", st->report), -1;
 }
@@ -851,7 +867,7 @@ static int carry_out(int argc, char **argv)
     if ((parsed = options(&st, argc, argv)) != 0) return parsed < 0;
     st.time = st.budget[0] == 'q' ? 0.02 : 0.06;
     st.seeds = st.budget[0] == 'q' ? 1 : 3;
-    st.started = time(NULL);
+    progress_begin(&st.line, st.quiet);
     if (mpm_io_make_directory(st.data, &fault) < 0) goto fail;
     if (log_read(&st) || plan(&st) || run_long(&l)) return 1;
     once = fmin(cost(1e5), cost(1e5));

@@ -7,8 +7,7 @@
 #include "impact_options.h"
 #include "plots.h"
 #include "program.h"
-
-#include <time.h>
+#include "terminal.h"
 
 /* ---- the case ------------------------------------------------------------------------------ */
 
@@ -126,8 +125,9 @@ typedef struct study {
     int64_t limit;          /* new runs allowed; < 0: any number */
     int64_t planned, done, fresh; /* runs: in all (a guess at first), finished, of these made now */
     double spent;           /* CPU seconds of the fresh ones */
+    int begun;              /* the clock of the line runs */
     char label[80];
-    time_t shown;
+    progress line;
 } study;
 
 static inline study study_of(const char *folder)
@@ -154,26 +154,31 @@ static inline int study_stopped(const study *s)
     return 3;
 }
 
-/* "run 12 of 40, 14 um at 810 m/s, 35 %, left 2:10", at most once a second. */
-static inline void study_progress(study *s, double part, double seconds)
+/* Starts the clock before the first new run; Ctrl-C and SIGTERM then ask for the end. */
+static inline void study_start(study *s)
 {
-    const time_t now = time(NULL);
-    const double each = ((double)s->fresh + part) > 0 ? (s->spent + seconds) / ((double)s->fresh + part) : 0;
-    double left = each * ((double)(s->planned - s->done) - part);
+    if (s->begun) return;
+    s->begun = 1;
+    stop_listen();
+    progress_begin(&s->line, s->quiet);
+}
+
+/* "run 12 of 40, 14 um at 810 m/s, 35 %, left 2:10". */
+static inline void study_progress(study *s, double part)
+{
+    const double runs = (double)(s->planned > s->done ? s->planned : s->done + 1), fresh = (double)s->fresh + part;
+    double left;
     char line[200];
-    if (s->quiet || now == s->shown) return;
-    s->shown = now;
-    if (left < 0) left = 0;
-    snprintf(line, sizeof line, "run %lld of %lld, %s, %.0f %%, left %.0f:%02d", (long long)s->done + 1,
-             (long long)(s->planned > s->done ? s->planned : s->done + 1), s->label, 100 * part, floor(left / 60),
-             (int)fmod(left, 60));
-    fprintf(stderr, "\r%-100s", line);
-    fflush(stderr);
+    if (!progress_due(&s->line, ((double)s->done + part) / runs)) return;
+    left = fresh > 0 ? progress_elapsed(&s->line) / fresh * (runs - (double)s->done - part) : 0;
+    snprintf(line, sizeof line, "run %lld of %.0f, %s, %.0f %%, left %.0f:%02d", (long long)s->done + 1, runs, s->label,
+             100 * part, floor(left / 60), (int)fmod(left, 60));
+    progress_show(&s->line, line);
 }
 
 static inline void study_progress_end(const study *s)
 {
-    if (!s->quiet) fprintf(stderr, "\r%-100s\r", "");
+    if (s->begun) progress_end(&s->line);
 }
 
 /* Mean height and velocity of the particle over those of the substrate, of the points still in the grid. */
@@ -336,7 +341,8 @@ static inline void study_measure(const impact *run, const impact_case *c, const 
 
 static inline double study_seconds(clock_t since) { return (double)(clock() - since) / (double)CLOCKS_PER_SEC; }
 
-/* Runs a case to its end, or unless s->whole until its outcome is decided. Returns 1, or 0 with a message. */
+/* Runs a case to its end, or unless s->whole until its outcome is decided. Returns 1; 0 with a message; -1 when asked
+   to stop. */
 static inline int study_run(study *s, const impact_case *c, double *value, char *message, size_t n)
 {
     const clock_t begun = clock();
@@ -345,17 +351,16 @@ static inline int study_run(study *s, const impact_case *c, double *value, char 
     impact run;
     if (!impact_begin(&run, c, message, n)) return 0;
     watch = study_watch_of(run.steps);
-    while (status >= 0 && run.world.steps < run.steps) {
+    while (status >= 0 && run.world.steps < run.steps && !stop_asked()) {
         status = study_step(&watch, &run);
-        if (run.world.steps % 64 == 0)
-            study_progress(s, (double)run.world.steps / (double)run.steps, study_seconds(begun));
+        if (run.world.steps % 64 == 0) study_progress(s, (double)run.world.steps / (double)run.steps);
         if (status >= 0 && study_decided(&watch, &run.world) && !s->whole) break;
     }
     if (status < 0) mpm_io_fault_text(message, n, &run.world.fault);
     else study_measure(&run, c, &watch, value);
     value[STUDY_CPU] = study_seconds(begun);
     impact_end(&run);
-    return status >= 0;
+    return status < 0 ? 0 : stop_asked() ? -1 : 1;
 }
 
 /* ---- finished runs ------------------------------------------------------------------------- */
@@ -443,11 +448,12 @@ static inline int study_keep(const study *s, const impact_case *c, const double 
 }
 
 /* The values of a case: from the store, or by running it now. Returns 1; 0 with a message; -1 when the
-   limit of new runs is reached. */
+   limit of new runs is reached, or when asked to stop: the run under way is then lost, the finished ones are kept. */
 static inline int study_need(study *s, const impact_case *c, double *value, char *message, size_t n)
 {
-    clock_t begun;
     const int found = study_look(s, c, value);
+    clock_t begun;
+    int status;
     if (found > 0) {
         s->done++;
         return 1;
@@ -457,8 +463,10 @@ static inline int study_need(study *s, const impact_case *c, double *value, char
         fprintf(stderr, "%s/runs: the record of %g um at %g m/s is damaged or of another case: run again\n", s->folder,
                 c->diameter, c->velocity);
     begun = clock();
+    study_start(s);
     snprintf(s->label, sizeof s->label, "%g um at %g m/s", c->diameter, c->velocity);
-    if (!study_run(s, c, value, message, n) || !study_keep(s, c, value, message, n)) return 0;
+    if ((status = study_run(s, c, value, message, n)) <= 0) return status;
+    if (!study_keep(s, c, value, message, n)) return 0;
     s->spent += study_seconds(begun);
     s->fresh++;
     s->done++;

@@ -66,7 +66,7 @@ static int parts(work *w)
         w->budget_name, *w->desk ? " --desk " : "", w->desk, *w->only ? " --only " : "", w->only, MPM_VERSION);
     for (k = 0; k < count; k++) {
         if (*w->only && !listed(w->only, part[k].name)) continue;
-        if (!w->s.quiet) fprintf(stderr, "\rA-%-97s\n", part[k].name);
+        if (!w->s.quiet) fprintf(stderr, "A-%s\n", part[k].name);
         w->budget = budget == QUICK && listed(w->desk, part[k].name) ? DESK : budget;
         status = part[k].run(w);
         study_progress_end(&w->s);

@@ -69,12 +69,14 @@ static int need_particles(work *w, particles_case *q, const char *folder)
 {
     option o[IMPACT_OPTIONS];
     const int n = particles_options(q, o);
+    int status;
     q->out.folder = folder;
     q->out.quiet = w->s.quiet;
     if (particles_finished(q)) return 1;
     if (w->s.limit >= 0 && w->s.fresh >= w->s.limit) return -1;
     w->s.fresh++;
-    if (particles_main(q, o, n)) {
+    if ((status = particles_main(q, o, n)) == STOPPED) return -1;
+    if (status) {
         snprintf(w->message, sizeof w->message, "the scene of %.300s failed", folder);
         return 0;
     }

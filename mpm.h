@@ -37,7 +37,7 @@
      describing                mpm_block and mpm_stress_fn; lists of choices; mpm_shape; mpm_contact; mpm_desc
      points, bodies, grid      mpm_points, mpm_body, mpm_node, mpm_run, mpm_pair, mpm_ledger, mpm_world
      setting up                mpm_init, mpm_body_add, mpm_body_add_points, mpm_contact_set, mpm_field_take
-     the step                  mpm_step = locate, p2g, forces, grid_update, contact_find, contact_apply, g2p,
+     the step                  mpm_step = locate, calm, p2g, forces, grid_update, contact_find, contact_apply, g2p,
                                musl, stress, move
      between the phases        mpm_support_of, mpm_support_at, mpm_push, mpm_node_push, mpm_pair_push: for extensions
      looking at it, restart    mpm_body_totals; mpm_blobs, mpm_restored
@@ -140,6 +140,7 @@ typedef double mpm_real;
 #define mpm_time_step mpm_time_step_f32
 #define mpm_step mpm_step_f32
 #define mpm_locate mpm_locate_f32
+#define mpm_calm mpm_calm_f32
 #define mpm_p2g mpm_p2g_f32
 #define mpm_forces mpm_forces_f32
 #define mpm_grid_update mpm_grid_update_f32
@@ -510,6 +511,8 @@ typedef struct mpm_desc {
     mpm_real gravity[3];     /* [length/time^2] */
     mpm_real mass_cutoff;    /* nodes lighter than this share of a mean point's mass are passed over:
                                 beyond it lie numbers too small to divide by (GIMP's outermost nodes) */
+    mpm_real calm;           /* time in which what the grid does not see of the points' velocities and pressures falls
+                                to 1/e, see mpm_calm; 0: never */
     /* capacities: in memory from MPM_MALLOC they may be 0 and grow by themselves; in yours they are final */
     int32_t points;          /* of all bodies; see mpm_shape_count */
     int32_t bodies;
@@ -679,6 +682,7 @@ typedef struct mpm_ledger {
     double hold;         /* energy lost in holding pairs: bonds */
     double walls;        /* energy lost at rigid walls; less what mpm_push and mpm_node_push brought in */
     double work;         /* done by gravity */
+    double calm;         /* of motion and strain turned into heat by mpm_calm: it is part of internal */
     double impulse[3];   /* momentum brought in by all but contact: dampers, sides, mirror images, gravity, pushes */
 } mpm_ledger;
 
@@ -821,6 +825,20 @@ MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt);
    caller's memory: see mpm_reserve; MPM_ERR_MEMORY. Points beyond a closed side are put back on it, others stay.
    Test: 21_world, 28_planes. */
 MPM_API mpm_status mpm_locate(mpm_world *w, mpm_real dt);
+
+/* Lets die out, in the time desc.calm, what the grid does not see of the points' velocities and pressures: the rest of
+   the field f = S f_I + rest, (S f_I)_p = sum N_I f_I, with sum m_p N_I rest_p = 0 at every node. Points that cross
+   cells leave noise there, which makes no momentum on the grid and stays for ever.
+     v_p -= (1 - e^(-t/calm)) rest_p,  e_p += (1 - e^(-2t/calm)) rest_p^2 / 2
+   with t an eighth of that time, or the step if that is longer: momentum, angular momentum and energy stay, and so does
+   all that the grid gets of velocities. Pressures p lose theirs by exchange of volume between neighbours,
+     dV_p = m_p (1 - e^(-t/calm)) rest_p / (rho0 K),  K = rho0 (wave_p^2 - 4/3 wave_s^2) of the body,  m_p de_p = -p_I dV_p
+   with p_I = (S p)_p: volume and energy stay. Wave speeds must be the material's; bodies without stress keep their
+   volumes. f_I solves sum_J (sum_p m_p N_I N_J) f_J = sum_p m_p N_I f_p, the whole mass matrix as in FMPM (Nairn,
+   Hammerquist, Comput. Methods Appl. Mech. Engrg. 384 (2021) 113964; XPIC, ibid. 318 (2017) 724, is its series), by
+   conjugate gradients with the lumped one, 20 steps for velocities and 5 for pressures (docs/quiet.md): what 20 steps
+   leave is seen, but hardly. Between mpm_locate and mpm_p2g; nothing where desc.calm is 0. Test: 29_calm. */
+MPM_API void mpm_calm(mpm_world *w);
 
 /* Mass m_I = sum m_p N_I and momentum P_I = sum m_p v_p N_I to the nodes (A 3.23, 3.24), then essential
    boundary conditions. Test: 20_method, 71_step. */
@@ -1015,6 +1033,7 @@ MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt)
 {
     mpm_status s = mpm_locate(w, dt), stressed;
     if (s < 0) return s;
+    mpm_calm(w);
     mpm_p2g(w);
     mpm_forces(w);
     mpm_grid_update(w);
@@ -1583,6 +1602,238 @@ MPM_API void mpm_node_position(const mpm_world *w, const mpm_node *n, mpm_real x
     int d;
     for (d = 0; d < 3; d++) x[d] = w->desc.origin[d] + (mpm_real)(at[d] - w->ghost) * w->desc.cell;
     if (mpm__flat(&w->desc)) x[1] = 0;
+}
+
+/* ---- calming ------------------------------------------------------------------------------ */
+
+#define MPM__CALM_BEATS 8       /* of mpm_calm in its time */
+#define MPM__CALM_VELOCITIES 20 /* steps of conjugate gradients: nearly all that the grid sees is left to it */
+#define MPM__CALM_PRESSURES 5   /* ... what it hardly sees goes too */
+
+/* What of a body is calmed: `parts` 3 its velocities; 1 its pressures, which are the same on both sides of a mirror. Its
+   runs and nodes, first ones and those after the last. Nodes hold f_I as momentum; of conjugate gradients, what is left
+   of the right hand side as velocity, the direction as reaction, the matrix times it as force. */
+typedef struct mpm__calmed {
+    int parts;
+    int32_t run, runs, node, nodes;
+    double left[3], first[3]; /* left . left / mass, now and at first */
+} mpm__calmed;
+
+static inline mpm_real mpm__mean_pressure(const mpm_points *q, int32_t i)
+{
+    return -(q->stress[0][i] + q->stress[1][i] + q->stress[2][i]) / 3;
+}
+
+/* Part d of what is calmed, of point i. */
+static inline mpm_real mpm__calm_part(const mpm_points *q, const mpm__calmed *c, int d, int32_t i)
+{
+    return c->parts == 3 ? q->v[d][i] : mpm__mean_pressure(q, i);
+}
+
+/* The direction of a run's nodes, or f_I. */
+static inline void mpm__calm_fetch(const mpm_world *w, const mpm_run *r, const mpm__calmed *c, int direction,
+                                   mpm_real V[3][MPM_SUPPORT])
+{
+    const int k = w->support[0], ky = w->support[1];
+    const int32_t *slot = mpm__run_nodes(w, r);
+    int a, d;
+    for (a = 0; a < k * ky * k; a++) {
+        const mpm_node *n = &w->node[slot[a]];
+        for (d = 0; d < 3; d++) V[d][a] = direction ? n->reaction[d] : n->momentum[d];
+    }
+    if (c->parts == 3 && r->flags & 63) mpm__turn(r, k, ky, V);
+}
+
+/* To the forces of a run's nodes: sum m N f of the points' f and the mass, or of f = S direction. */
+MPM__KERNEL void mpm__calm_map_run(mpm_world *w, const mpm_run *r, int k, int ky, const mpm__calmed *c, int direction)
+{
+    const int32_t *slot = mpm__run_nodes(w, r);
+    mpm_real V[3][MPM_SUPPORT], F[3][MPM_SUPPORT] = {{0}}, M[MPM_SUPPORT] = {0}, N[MPM_SUPPORT];
+    mpm__weights s;
+    int32_t at;
+    int n, p, a, d;
+    if (direction) mpm__calm_fetch(w, r, c, 1, V);
+    MPM__EACH_PIECE(r, at, n) {
+        mpm__weigh(w, r, at, n, k, ky, &s);
+        for (p = 0; p < n; p++) {
+            const mpm_real m = w->points.mass[at + p];
+            mpm__products(&s, p, k, ky, N);
+            for (a = 0; a < k * ky * k && !direction; a++) M[a] += m * N[a];
+            for (d = 0; d < c->parts; d++) {
+                const mpm_real f = direction ? mpm__value(&s, p, k, ky, V[d]) : mpm__calm_part(&w->points, c, d, at + p);
+                for (a = 0; a < k * ky * k; a++) F[d][a] += m * f * N[a];
+            }
+        }
+    }
+    if (c->parts == 3 && r->flags & 63) mpm__turn(r, k, ky, F);
+    for (a = 0; a < k * ky * k; a++) {
+        w->node[slot[a]].mass += M[a];
+        for (d = 0; d < 3; d++) w->node[slot[a]].force[d] += F[d][a];
+    }
+}
+
+/* ... of all runs of the body, without what sides forbid. */
+static inline void mpm__calm_map(mpm_world *w, const mpm__calmed *c, int direction)
+{
+    int32_t i;
+#define MPM__CALL(k, ky, hoop) mpm__calm_map_run(w, &w->run[i], k, ky, c, direction)
+    for (i = c->run; i < c->runs; i++) MPM__SPECIALISED(w, 0, MPM__CALL);
+#undef MPM__CALL
+    for (i = c->node; i < c->nodes; i++)
+        if (c->parts == 3 && w->node[i].flags) mpm__constrain(w, &w->node[i], w->node[i].force, NULL);
+}
+
+/* The next direction, conjugate to those before it. */
+static inline void mpm__calm_turn(mpm_world *w, mpm__calmed *c)
+{
+    int32_t i;
+    int d;
+    for (d = 0; d < c->parts; d++) {
+        const double before = c->left[d];
+        mpm_real keep;
+        c->left[d] = 0;
+        for (i = c->node; i < c->nodes; i++) {
+            const mpm_node *n = &w->node[i];
+            if (n->mass > 0) c->left[d] += (double)(n->velocity[d] * (n->velocity[d] / n->mass));
+        }
+        keep = (mpm_real)(before > 0 ? c->left[d] / before : 0);
+        for (i = c->node; i < c->nodes; i++) {
+            mpm_node *n = &w->node[i];
+            n->reaction[d] = (n->mass > 0 ? n->velocity[d] / n->mass : 0) + keep * n->reaction[d];
+        }
+    }
+}
+
+/* As far along the direction as is best. */
+static inline void mpm__calm_go(mpm_world *w, const mpm__calmed *c)
+{
+    int32_t i;
+    int d;
+    for (d = 0; d < c->parts; d++) {
+        const double enough = (double)MPM_EPSILON * (double)MPM_EPSILON * c->first[d];
+        double slope = 0;
+        mpm_real go;
+        for (i = c->node; i < c->nodes; i++) slope += (double)(w->node[i].reaction[d] * w->node[i].force[d]);
+        go = (mpm_real)(c->left[d] > enough && slope > 0 ? c->left[d] / slope : 0);
+        for (i = c->node; i < c->nodes; i++) {
+            mpm_node *n = &w->node[i];
+            n->momentum[d] += go * n->reaction[d];
+            n->velocity[d] -= go * n->force[d];
+            n->force[d] = 0;
+        }
+    }
+}
+
+/* f_I of the body's points. */
+static inline void mpm__calm_see(mpm_world *w, mpm__calmed *c, int steps)
+{
+    int32_t i;
+    int d, step;
+    mpm__calm_map(w, c, 0);
+    for (i = c->node; i < c->nodes; i++)
+        for (d = 0; d < 3; d++) {
+            w->node[i].velocity[d] = w->node[i].force[d];
+            w->node[i].force[d] = 0;
+        }
+    for (step = 0; step < steps; step++) {
+        mpm__calm_turn(w, c);
+        if (step == 0) memcpy(c->first, c->left, sizeof c->first);
+        mpm__calm_map(w, c, 1);
+        mpm__calm_go(w, c);
+    }
+}
+
+/* Takes `share` of what is not seen from the velocity of point i. */
+static inline void mpm__calm_velocity(mpm_world *w, int32_t i, const mpm_real *rest, mpm_real share)
+{
+    mpm_points *q = &w->points;
+    const mpm_real heat = share * (1 - share / 2) * (rest[0] * rest[0] + rest[1] * rest[1] + rest[2] * rest[2]);
+    int d;
+    for (d = 0; d < 3; d++) {
+        q->v[d][i] -= share * rest[d];
+        w->ledger.impulse[d] -= (double)(q->mass[i] * share * rest[d]); /* of mirrors and fixed sides: else 0 in sum */
+    }
+    q->energy[i] += heat;
+    w->ledger.calm += (double)(q->mass[i] * heat);
+}
+
+/* ... from its pressure, by exchange of volume. */
+static inline void mpm__calm_pressure(mpm_world *w, const mpm_body_desc *b, int32_t i, mpm_real rest, mpm_real share)
+{
+    mpm_points *q = &w->points;
+    const mpm_real K = b->density * (b->wave_p * b->wave_p - MPM_R(4.0) / 3 * b->wave_s * b->wave_s);
+    const mpm_real volume = share * rest / (b->density * K); /* per mass */
+    int d;
+    q->energy[i] -= (mpm__mean_pressure(q, i) - rest) * volume;
+    q->density[i] /= 1 + q->density[i] * volume;
+    for (d = 0; d < 3; d++) q->stress[d][i] += share * rest;
+    w->ledger.calm += (double)(q->mass[i] * (1 - share / 2) * rest * volume);
+}
+
+MPM__KERNEL void mpm__calm_run(mpm_world *w, const mpm_run *r, int k, int ky, const mpm__calmed *c, mpm_real share)
+{
+    mpm_real V[3][MPM_SUPPORT], rest[3];
+    mpm__weights s;
+    int32_t at;
+    int n, p, d;
+    mpm__calm_fetch(w, r, c, 0, V);
+    MPM__EACH_PIECE(r, at, n) {
+        mpm__weigh(w, r, at, n, k, ky, &s);
+        for (p = 0; p < n; p++) {
+            for (d = 0; d < c->parts; d++)
+                rest[d] = mpm__calm_part(&w->points, c, d, at + p) - mpm__value(&s, p, k, ky, V[d]);
+            if (c->parts == 3) mpm__calm_velocity(w, at + p, rest, share);
+            else mpm__calm_pressure(w, &w->body[r->body].desc, at + p, rest[0], share);
+        }
+    }
+}
+
+/* Velocities or pressures of a body. Leaves its nodes as they were: empty. */
+static inline void mpm__calm_body(mpm_world *w, mpm__calmed *c, int parts, int steps, mpm_real share)
+{
+    const size_t bytes = sizeof w->node->momentum;
+    int32_t i;
+    c->parts = parts;
+    c->left[0] = c->left[1] = c->left[2] = 0;
+    mpm__calm_see(w, c, steps);
+#define MPM__CALL(k, ky, hoop) mpm__calm_run(w, &w->run[i], k, ky, c, share)
+    for (i = c->run; i < c->runs; i++) MPM__SPECIALISED(w, 0, MPM__CALL);
+#undef MPM__CALL
+    for (i = c->node; i < c->nodes; i++) {
+        mpm_node *n = &w->node[i];
+        n->mass = 0;
+        memset(n->momentum, 0, bytes);
+        memset(n->velocity, 0, bytes);
+        memset(n->reaction, 0, bytes);
+    }
+}
+
+/* The share that dies out in this step: in short steps, where it reaches the next beat. */
+static inline mpm_real mpm__calm_share(const mpm_world *w)
+{
+    const mpm_real beat = w->desc.calm / MPM__CALM_BEATS;
+    mpm_real t = w->dt;
+    if (!(w->desc.calm > 0)) return 0;
+    if (t < beat) t = beat * (mpm_real)((int64_t)((w->time + t) / beat) - (int64_t)(w->time / beat));
+    return -mpm_expm1(-t / w->desc.calm);
+}
+
+MPM_API void mpm_calm(mpm_world *w)
+{
+    const mpm_real share = mpm__calm_share(w);
+    int32_t b;
+    mpm__calmed c;
+    memset(&c, 0, sizeof c);
+    for (b = 0; b < w->bodies && share > 0; b++) { /* runs and nodes lie in the order of bodies */
+        const mpm_body_desc *d = &w->body[b].desc;
+        c.run = c.runs;
+        c.node = c.nodes;
+        while (c.runs < w->runs && w->run[c.runs].body == b) c.runs++;
+        while (c.nodes < w->nodes && w->node[c.nodes].body == b) c.nodes++;
+        mpm__calm_body(w, &c, 3, MPM__CALM_VELOCITIES, share);
+        if (d->stress && d->wave_p * d->wave_p > MPM_R(4.0) / 3 * d->wave_s * d->wave_s)
+            mpm__calm_body(w, &c, 1, MPM__CALM_PRESSURES, share);
+    }
 }
 
 /* ---- to the nodes ------------------------------------------------------------------------- */
@@ -4373,6 +4624,7 @@ MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *f)
     if (s == MPM_OK) s = mpm_contact_check(&d->contact, f);
     if (s == MPM_OK) s = mpm_want(d->wall_friction >= 0, f, "wall_friction", d->wall_friction, -1);
     if (s == MPM_OK) s = mpm_want(d->mass_cutoff >= 0, f, "mass_cutoff", d->mass_cutoff, -1);
+    if (s == MPM_OK) s = mpm_want(d->calm >= 0, f, "calm", d->calm, -1);
     return s;
 }
 

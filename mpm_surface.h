@@ -1875,6 +1875,7 @@ MPM_API mpm_status mpm_surface_step(mpm_surfaces *s, mpm_world *w, mpm_real dt)
 {
     mpm_status st = mpm_locate(w, dt), later;
     if (st < 0) return st;
+    mpm_calm(w);
     mpm_p2g(w);
     mpm_forces(w);
     if ((later = mpm_surface_contact(s, w)) < 0) {

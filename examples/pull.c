@@ -102,6 +102,7 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
     mpm_interface met;
     do {
         if (mpm_locate(w, s->dt) < 0) return report(&w->fault, "locate");
+        mpm_calm(w);
         mpm_p2g(w);
         mpm_forces(w);
         if (hold(s, p) < 0) return report(&w->fault, "contact");

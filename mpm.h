@@ -830,14 +830,14 @@ MPM_API mpm_status mpm_locate(mpm_world *w, mpm_real dt);
    the field f = S f_I + rest, (S f_I)_p = sum N_I f_I, with sum m_p N_I rest_p = 0 at every node. Points that cross
    cells leave noise there, which makes no momentum on the grid and stays for ever.
      v_p -= (1 - e^(-t/calm)) rest_p,  e_p += (1 - e^(-2t/calm)) rest_p^2 / 2
-   with t an eighth of that time, or the step if that is longer: momentum, angular momentum and energy stay, and so does
-   all that the grid gets of velocities. Pressures p lose theirs by exchange of volume between neighbours,
+   with t an eighth of that time, or the step if that is longer: momentum and energy stay, and nearly all that the grid gets
+   of velocities. Pressures p lose theirs by exchange of volume between neighbours,
      dV_p = m_p (1 - e^(-t/calm)) rest_p / (rho0 K),  K = rho0 (wave_p^2 - 4/3 wave_s^2) of the body,  m_p de_p = -p_I dV_p
    with p_I = (S p)_p: volume and energy stay. Wave speeds must be the material's; bodies without stress keep their
    volumes. f_I solves sum_J (sum_p m_p N_I N_J) f_J = sum_p m_p N_I f_p, the whole mass matrix as in FMPM (Nairn,
    Hammerquist, Comput. Methods Appl. Mech. Engrg. 384 (2021) 113964; XPIC, ibid. 318 (2017) 724, is its series), by
-   conjugate gradients with the lumped one, 20 steps for velocities and 5 for pressures (docs/quiet.md): what 20 steps
-   leave is seen, but hardly. Between mpm_locate and mpm_p2g; nothing where desc.calm is 0. Test: 29_calm. */
+   conjugate gradients with the lumped one, 10 steps for velocities and 2 for pressures (docs/quiet.md): what they have
+   not found by then the grid hardly sees. Between mpm_locate and mpm_p2g; nothing where desc.calm is 0. Test: 29_calm. */
 MPM_API void mpm_calm(mpm_world *w);
 
 /* Mass m_I = sum m_p N_I and momentum P_I = sum m_p v_p N_I to the nodes (A 3.23, 3.24), then essential
@@ -1607,16 +1607,18 @@ MPM_API void mpm_node_position(const mpm_world *w, const mpm_node *n, mpm_real x
 /* ---- calming ------------------------------------------------------------------------------ */
 
 #define MPM__CALM_BEATS 8       /* of mpm_calm in its time */
-#define MPM__CALM_VELOCITIES 20 /* steps of conjugate gradients: nearly all that the grid sees is left to it */
-#define MPM__CALM_PRESSURES 5   /* ... what it hardly sees goes too */
+#define MPM__CALM_VELOCITIES 10 /* steps of conjugate gradients: most of what the grid sees is left to it, and round-off,
+                                   which they amplify, is still small */
+#define MPM__CALM_PRESSURES 2   /* ... what it hardly sees goes too */
 
 /* What of a body is calmed: `parts` 3 its velocities; 1 its pressures, which are the same on both sides of a mirror. Its
    runs and nodes, first ones and those after the last. Nodes hold f_I as momentum; of conjugate gradients, what is left
    of the right hand side as velocity, the direction as reaction, the matrix times it as force. */
 typedef struct mpm__calmed {
-    int parts;
+    int parts, held;          /* bit d: a side holds part d at some node */
     int32_t run, runs, node, nodes;
     double left[3], first[3]; /* left . left / mass, now and at first */
+    double sum[3], mass;      /* of the points: of m f, of m */
 } mpm__calmed;
 
 static inline mpm_real mpm__mean_pressure(const mpm_points *q, int32_t i)
@@ -1724,23 +1726,63 @@ static inline void mpm__calm_go(mpm_world *w, const mpm__calmed *c)
     }
 }
 
+/* Lifts f_I to the momentum of the points: at the beginning to their mean, which all directions then keep, but for the
+   round-off that is taken out at the end. Not in a part that a side holds somewhere. */
+static inline void mpm__calm_level(mpm_world *w, const mpm__calmed *c)
+{
+    int32_t i;
+    int d;
+    for (d = 0; d < c->parts; d++) {
+        double lacks = c->sum[d];
+        mpm_real lift;
+        for (i = c->node; i < c->nodes; i++) lacks -= (double)(w->node[i].mass * w->node[i].momentum[d]);
+        lift = (mpm_real)(c->held >> d & 1 ? 0 : lacks / c->mass);
+        for (i = c->node; i < c->nodes; i++) w->node[i].momentum[d] += lift;
+    }
+}
+
+/* The parts that sides hold at this node, as bits. */
+static inline int mpm__calm_held(const mpm_world *w, const mpm__calmed *c, const mpm_node *n)
+{
+    mpm_real free_parts[3] = {1, 1, 1};
+    int d, held = 0;
+    if (c->parts == 3) mpm__constrain(w, n, free_parts, NULL);
+    for (d = 0; d < 3; d++) held |= free_parts[d] < 1 ? 1 << d : 0;
+    return held;
+}
+
+/* Maps the points, and sums up what they map. */
+static inline void mpm__calm_begin(mpm_world *w, mpm__calmed *c)
+{
+    int32_t i;
+    int d;
+    mpm__calm_map(w, c, 0);
+    for (c->held = 0, c->mass = 0, d = 0; d < 3; d++) c->sum[d] = c->left[d] = 0;
+    for (i = c->node; i < c->nodes; i++) {
+        c->held |= mpm__calm_held(w, c, &w->node[i]);
+        for (c->mass += (double)w->node[i].mass, d = 0; d < 3; d++) c->sum[d] += (double)w->node[i].force[d];
+    }
+    mpm__calm_level(w, c);
+    for (i = c->node; i < c->nodes; i++)
+        for (d = 0; d < 3; d++) {
+            mpm_node *n = &w->node[i];
+            n->velocity[d] = n->force[d] - n->mass * n->momentum[d];
+            n->force[d] = 0;
+        }
+}
+
 /* f_I of the body's points. */
 static inline void mpm__calm_see(mpm_world *w, mpm__calmed *c, int steps)
 {
-    int32_t i;
-    int d, step;
-    mpm__calm_map(w, c, 0);
-    for (i = c->node; i < c->nodes; i++)
-        for (d = 0; d < 3; d++) {
-            w->node[i].velocity[d] = w->node[i].force[d];
-            w->node[i].force[d] = 0;
-        }
+    int step;
+    mpm__calm_begin(w, c);
     for (step = 0; step < steps; step++) {
         mpm__calm_turn(w, c);
         if (step == 0) memcpy(c->first, c->left, sizeof c->first);
         mpm__calm_map(w, c, 1);
         mpm__calm_go(w, c);
     }
+    mpm__calm_level(w, c);
 }
 
 /* Takes `share` of what is not seen from the velocity of point i. */
@@ -1794,7 +1836,6 @@ static inline void mpm__calm_body(mpm_world *w, mpm__calmed *c, int parts, int s
     const size_t bytes = sizeof w->node->momentum;
     int32_t i;
     c->parts = parts;
-    c->left[0] = c->left[1] = c->left[2] = 0;
     mpm__calm_see(w, c, steps);
 #define MPM__CALL(k, ky, hoop) mpm__calm_run(w, &w->run[i], k, ky, c, share)
     for (i = c->run; i < c->runs; i++) MPM__SPECIALISED(w, 0, MPM__CALL);

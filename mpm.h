@@ -827,17 +827,20 @@ MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt);
 MPM_API mpm_status mpm_locate(mpm_world *w, mpm_real dt);
 
 /* Lets die out, in the time desc.calm, what the grid does not see of the points' velocities and pressures: the rest of
-   the field f = S f_I + rest, (S f_I)_p = sum N_I f_I, with sum m_p N_I rest_p = 0 at every node. Points that cross
-   cells leave noise there, which makes no momentum on the grid and stays for ever.
-     v_p -= (1 - e^(-t/calm)) rest_p,  e_p += (1 - e^(-2t/calm)) rest_p^2 / 2
-   with t an eighth of that time, or the step if that is longer: momentum and energy stay, and nearly all that the grid gets
-   of velocities. Pressures p lose theirs by exchange of volume between neighbours,
-     dV_p = m_p (1 - e^(-t/calm)) rest_p / (rho0 K),  K = rho0 (wave_p^2 - 4/3 wave_s^2) of the body,  m_p de_p = -p_I dV_p
-   with p_I = (S p)_p: volume and energy stay. Wave speeds must be the material's; bodies without stress keep their
-   volumes. f_I solves sum_J (sum_p m_p N_I N_J) f_J = sum_p m_p N_I f_p, the whole mass matrix as in FMPM (Nairn,
-   Hammerquist, Comput. Methods Appl. Mech. Engrg. 384 (2021) 113964; XPIC, ibid. 318 (2017) 724, is its series), by
-   conjugate gradients with the lumped one, 10 steps for velocities and 2 for pressures (docs/quiet.md): what they have
-   not found by then the grid hardly sees. Between mpm_locate and mpm_p2g; nothing where desc.calm is 0. Test: 29_calm. */
+   f_p = sum N_I f_I + rest_p, where sum m_p N_I rest_p = 0 at every node. Points that cross cells leave noise there,
+   which has no momentum on the grid and stays for ever.
+     v_p -= (1 - e^(-t/calm)) rest_p,  e_p += (1 - e^(-2 t/calm)) rest_p^2/2
+   with t an eighth of calm, or the step where that is longer: momentum and energy stay, and nearly all that the grid
+   gets of velocities. Pressures lose theirs by exchange of volume between neighbours,
+     m_p d(1/rho_p) = dV_p = m_p (1 - e^(-t/calm)) rest_p/(rho0 K),  m_p de_p = -p dV_p with p = sum N_I p_I,
+     K = rho0 (wave_p^2 - 4/3 wave_s^2) of the body
+   so that volume and energy stay; wave speeds must be the material's, bodies without stress keep their volumes.
+     sum_J (sum_p m_p N_I N_J) f_J = sum_p m_p N_I f_p
+   is solved with the whole mass matrix, as in FMPM (Nairn, Hammerquist, Comput. Methods Appl. Mech. Engrg. 377 (2021)
+   113667; XPIC, Hammerquist, Nairn, ibid. 318 (2017) 724, is its series), by conjugate gradients upon the lumped one:
+   10 steps for velocities, 2 for pressures. What they have not found by then the grid hardly sees, and it goes with the
+   rest (docs/quiet.md). Temperatures are not told of the heat. Between mpm_locate and mpm_p2g; nothing where
+   desc.calm is 0. Test: 29_calm. */
 MPM_API void mpm_calm(mpm_world *w);
 
 /* Mass m_I = sum m_p N_I and momentum P_I = sum m_p v_p N_I to the nodes (A 3.23, 3.24), then essential
@@ -1607,13 +1610,13 @@ MPM_API void mpm_node_position(const mpm_world *w, const mpm_node *n, mpm_real x
 /* ---- calming ------------------------------------------------------------------------------ */
 
 #define MPM__CALM_BEATS 8       /* of mpm_calm in its time */
-#define MPM__CALM_VELOCITIES 10 /* steps of conjugate gradients: most of what the grid sees is left to it, and round-off,
-                                   which they amplify, is still small */
+#define MPM__CALM_VELOCITIES 10 /* steps of conjugate gradients: most of what the grid sees is left to it, and
+                                   round-off, which they amplify, is still small */
 #define MPM__CALM_PRESSURES 2   /* ... what it hardly sees goes too */
 
-/* What of a body is calmed: `parts` 3 its velocities; 1 its pressures, which are the same on both sides of a mirror. Its
-   runs and nodes, first ones and those after the last. Nodes hold f_I as momentum; of conjugate gradients, what is left
-   of the right hand side as velocity, the direction as reaction, the matrix times it as force. */
+/* What of a body is calmed: `parts` 3 its velocities; 1 its pressures, which are the same on both sides of a mirror.
+   Its runs and nodes, first ones and those after the last. Nodes hold f_I as momentum; of conjugate gradients, what is
+   left of the right hand side as velocity, the direction as reaction, the matrix times it as force. */
 typedef struct mpm__calmed {
     int parts, held;          /* bit d: a side holds part d at some node */
     int32_t run, runs, node, nodes;
@@ -1662,8 +1665,9 @@ MPM__KERNEL void mpm__calm_map_run(mpm_world *w, const mpm_run *r, int k, int ky
             mpm__products(&s, p, k, ky, N);
             for (a = 0; a < k * ky * k && !direction; a++) M[a] += m * N[a];
             for (d = 0; d < c->parts; d++) {
-                const mpm_real f = direction ? mpm__value(&s, p, k, ky, V[d]) : mpm__calm_part(&w->points, c, d, at + p);
-                for (a = 0; a < k * ky * k; a++) F[d][a] += m * f * N[a];
+                const mpm_real f = m * (direction ? mpm__value(&s, p, k, ky, V[d])
+                                                  : mpm__calm_part(&w->points, c, d, at + p));
+                for (a = 0; a < k * ky * k; a++) F[d][a] += f * N[a];
             }
         }
     }

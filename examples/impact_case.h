@@ -473,8 +473,9 @@ static inline void impact_quiet(const mpm_world *w, impact_result *r)
     for (i = b->first; i < b->first + b->active; i++) {
         double speed = 0, stress = 0;
         for (a = 0; a < 3; a++) {
-            const double mean = w->desc.side[2 * a] == MPM_SIDE_SYMMETRY ? 0 : r->particle.momentum[a] / r->particle.mass;
-            speed = hypot(speed, (double)q->v[a][i] - mean);
+            const int mirror = w->desc.side[2 * a] == MPM_SIDE_SYMMETRY;
+            const double mean = r->particle.momentum[a] / r->particle.mass;
+            speed = hypot(speed, (double)q->v[a][i] - (mirror ? 0 : mean));
             stress += (double)q->stress[a][i];
         }
         slow += speed <= 5;

@@ -1,5 +1,5 @@
-/* 29_calm - mpm_calm: what the grid does not see of velocities and pressures dies out, in the time asked for; what it sees
-   stays, and so do mass, momentum, volume and energy. SPDX-License-Identifier: MIT */
+/* 29_calm - mpm_calm: what the grid does not see of velocities and pressures dies out, in the time asked for; what it
+   sees stays, and so do mass, momentum, volume and energy. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "scene.h"
 #include "check.h"
@@ -16,8 +16,8 @@ static double noise_of(uint32_t *seed)
     return (double)(*seed >> 8) / 8388608.0 - 1;
 }
 
-/* An elastic block of 6 cells, or 4 in three dimensions, with noise of 100 m/s and 1 GPa, amid a grid or on a mirror. It
-   turns by `spin` about y. */
+/* An elastic block of 6 cells, or 4 in three dimensions, with noise of 100 m/s and 1 GPa, amid a grid or on a mirror.
+   It turns by `spin` about y. */
 static void begin(mpm_world *w, mpm_material *m, mpm_geometry geometry, mpm_basis basis, int mirror, double spin,
                   double calm)
 {
@@ -70,14 +70,15 @@ static sums sums_of(const mpm_world *w)
     s.volume = s.angular = 0;
     for (i = 0; i < q->count; i++) {
         s.volume += (double)q->mass[i] / (double)q->density[i];
-        s.angular += (double)q->mass[i] * ((double)q->x[2][i] * (double)q->v[0][i] - (double)q->x[0][i] * (double)q->v[2][i]);
+        s.angular += (double)q->mass[i] * (double)q->x[2][i] * (double)q->v[0][i];
+        s.angular -= (double)q->mass[i] * (double)q->x[0][i] * (double)q->v[2][i];
     }
     return s;
 }
 
 /* Nothing is lost. Momentum across a mirror is the mirror's, and in the ledger. Conjugate gradients amplify round-off:
-   energy is good to half the digits. Angular momentum is as good as they have converged; a lumped mass matrix would take
-   a tenth of it and more. */
+   energy is good to half the digits. Angular momentum is as good as they have converged: of a single step it would miss
+   0.4 to 2.2 %. */
 static void conserves(mpm_geometry geometry, mpm_basis basis, int mirror)
 {
     static const char *const place[] = {"3d", "plane", "axisymmetric"};
@@ -98,7 +99,7 @@ static void conserves(mpm_geometry geometry, mpm_basis basis, int mirror)
         CHECK_NEAR("... momentum stays", after.t.momentum[a] - w.ledger.impulse[a], before.t.momentum[a],
                    64 * eps * scale);
     if (!mirror) CHECK_NEAR("... without help", w.ledger.impulse[0], 0, 64 * eps * scale);
-    if (!mirror) CHECK_NEAR("... and angular momentum", after.angular, before.angular, 0.02 * fabs(before.angular));
+    if (!mirror) CHECK_NEAR("... and angular momentum", after.angular, before.angular, 0.002 * fabs(before.angular));
     CHECK_RELATIVE("... volume", after.volume, before.volume, 64 * eps);
     CHECK_NEAR("... energy", after.t.kinetic + after.t.internal, before.t.kinetic + before.t.internal,
                sqrt(eps) * before.t.kinetic);
@@ -106,8 +107,7 @@ static void conserves(mpm_geometry geometry, mpm_basis basis, int mirror)
     mpm_free(&w);
 }
 
-/* The momentum of every node, but for what ten steps of conjugate gradients leave. The lumped mass matrix alone would
-   take most of the noise that a node sees. */
+/* The momentum of every node, but for what ten steps of conjugate gradients leave: a single step misses a quarter. */
 static void grid_stays(void)
 {
     mpm_material m;

@@ -37,7 +37,7 @@
      describing                mpm_block and mpm_stress_fn; lists of choices; mpm_shape; mpm_contact; mpm_desc
      points, bodies, grid      mpm_points, mpm_body, mpm_node, mpm_run, mpm_pair, mpm_ledger, mpm_world
      setting up                mpm_init, mpm_body_add, mpm_body_add_points, mpm_contact_set, mpm_field_take
-     the step                  mpm_step = locate, p2g, forces, grid_update, contact_find, contact_apply, g2p,
+     the step                  mpm_step = locate, calm, p2g, forces, grid_update, contact_find, contact_apply, g2p,
                                musl, stress, move
      between the phases        mpm_support_of, mpm_support_at, mpm_push, mpm_node_push, mpm_pair_push: for extensions
      looking at it, restart    mpm_body_totals; mpm_blobs, mpm_restored
@@ -143,6 +143,7 @@ typedef double mpm_real;
 #define mpm_to_points mpm_to_points_f32
 #define mpm_stress_and_move mpm_stress_and_move_f32
 #define mpm_locate mpm_locate_f32
+#define mpm_calm mpm_calm_f32
 #define mpm_p2g mpm_p2g_f32
 #define mpm_forces mpm_forces_f32
 #define mpm_grid_update mpm_grid_update_f32
@@ -521,6 +522,8 @@ typedef struct mpm_desc {
     mpm_real gravity[3];     /* [length/time^2] */
     mpm_real mass_cutoff;    /* nodes lighter than this share of a mean point's mass are passed over:
                                 beyond it lie numbers too small to divide by (GIMP's outermost nodes) */
+    mpm_real calm;           /* time in which what the grid does not see of the points' velocities and pressures falls
+                                to 1/e, see mpm_calm; 0: never */
     /* capacities: in memory from MPM_MALLOC they may be 0 and grow by themselves; in yours they are final */
     int32_t points;          /* of all bodies; see mpm_shape_count */
     int32_t bodies;
@@ -690,6 +693,7 @@ typedef struct mpm_ledger {
     double hold;         /* energy lost in holding pairs: bonds */
     double walls;        /* energy lost at rigid walls; less what mpm_push and mpm_node_push brought in */
     double work;         /* done by gravity */
+    double calm;         /* of motion and strain turned into heat by mpm_calm: it is part of internal */
     double impulse[3];   /* momentum brought in by all but contact: dampers, sides, mirror images, gravity, pushes */
 } mpm_ledger;
 
@@ -832,6 +836,23 @@ MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt);
    caller's memory: see mpm_reserve; MPM_ERR_MEMORY. Points beyond a closed side are put back on it, others stay.
    Test: 21_world, 28_planes. */
 MPM_API mpm_status mpm_locate(mpm_world *w, mpm_real dt);
+
+/* Lets die out, in the time desc.calm, what the grid does not see of the points' velocities and pressures: the rest of
+   f_p = sum N_I f_I + rest_p, where sum m_p N_I rest_p = 0 at every node. Points that cross cells leave noise there,
+   which has no momentum on the grid and stays for ever.
+     v_p -= (1 - e^(-t/calm)) rest_p,  e_p += (1 - e^(-2 t/calm)) rest_p^2/2
+   with t an eighth of calm, or the step where that is longer: momentum and energy stay, and nearly all that the grid
+   gets of velocities. Pressures lose theirs by exchange of volume between neighbours,
+     m_p d(1/rho_p) = dV_p = m_p (1 - e^(-t/calm)) rest_p/(rho0 K),  m_p de_p = -p dV_p with p = sum N_I p_I,
+     K = rho0 (wave_p^2 - 4/3 wave_s^2) of the body
+   so that volume and energy stay; wave speeds must be the material's, bodies without stress keep their volumes.
+     sum_J (sum_p m_p N_I N_J) f_J = sum_p m_p N_I f_p
+   is solved with the whole mass matrix, as in FMPM (Nairn, Hammerquist, Comput. Methods Appl. Mech. Engrg. 377 (2021)
+   113667; XPIC, Hammerquist, Nairn, ibid. 318 (2017) 724, is its series), by conjugate gradients upon the lumped one:
+   10 steps for velocities, 2 for pressures. What they have not found by then the grid hardly sees, and it goes with the
+   rest (docs/quiet.md). Temperatures are not told of the heat. Between mpm_locate and mpm_p2g; nothing where
+   desc.calm is 0. Test: 29_calm. */
+MPM_API void mpm_calm(mpm_world *w);
 
 /* Mass m_I = sum m_p N_I and momentum P_I = sum m_p v_p N_I to the nodes (A 3.23, 3.24), then essential
    boundary conditions. Test: 20_method, 71_step. */
@@ -1029,6 +1050,7 @@ MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt)
 {
     mpm_status s = mpm_locate(w, dt), stressed;
     if (s < 0) return s;
+    mpm_calm(w);
     mpm_to_nodes(w);      /* mpm_p2g, mpm_forces */
     mpm_grid_update(w);
     mpm_contact_find(w);
@@ -1310,10 +1332,13 @@ MPM__KERNEL void mpm__values_gradient(const mpm__weights *s, int k, int ky, cons
         }
 }
 
+/* Nodes of a support. No constant to the compiler: it then does the sums of several nodes at a time, point by point,
+   rather than of several points, which have to be added in order. */
+MPM__KERNEL int mpm__reach(const mpm_world *w) { return w->support[0] * w->support[1] * w->support[2]; }
+
 MPM__KERNEL const int32_t *mpm__run_nodes(const mpm_world *w, const mpm_run *r)
 {
-    const int reach = w->support[0] * w->support[1] * w->support[2];
-    return w->slot + (size_t)(r - w->run) * (size_t)reach;
+    return w->slot + (size_t)(r - w->run) * (size_t)mpm__reach(w);
 }
 
 /* 1 if node a of a run is the image of its slot behind a plane across axis d, 2 if behind a fixed side; else 0. */
@@ -1724,15 +1749,292 @@ MPM_API void mpm_node_position(const mpm_world *w, const mpm_node *n, mpm_real x
     if (mpm__flat(&w->desc)) x[1] = 0;
 }
 
+/* ---- calming ------------------------------------------------------------------------------ */
+
+#define MPM__CALM_BEATS 8       /* of mpm_calm in its time */
+#define MPM__CALM_VELOCITIES 10 /* steps of conjugate gradients: most of what the grid sees is left to it, and
+                                   round-off, which they amplify, is still small */
+#define MPM__CALM_PRESSURES 2   /* ... what it hardly sees goes too */
+
+/* What of a body is calmed: `parts` 3 its velocities; 1 its pressures, which are the same on both sides of a mirror.
+   Its runs and nodes, first ones and those after the last. Nodes hold f_I as momentum; of conjugate gradients, what is
+   left of the right hand side as velocity, the direction as reaction, the matrix times it as force. */
+typedef struct mpm__calmed {
+    int parts, held;          /* bit d: a side holds part d at some node */
+    int32_t run, runs, node, nodes;
+    double left[3], first[3]; /* left . left / mass, now and at first */
+    double sum[3], mass;      /* of the points: of m f, of m */
+} mpm__calmed;
+
+static inline mpm_real mpm__mean_pressure(const mpm_points *q, int32_t i)
+{
+    return -(q->stress[0][i] + q->stress[1][i] + q->stress[2][i]) / 3;
+}
+
+/* Part d of what is calmed, of point i. */
+static inline mpm_real mpm__calm_part(const mpm_points *q, const mpm__calmed *c, int d, int32_t i)
+{
+    return c->parts == 3 ? q->v[d][i] : mpm__mean_pressure(q, i);
+}
+
+/* The direction of a run's nodes, or f_I. */
+static inline void mpm__calm_fetch(const mpm_world *w, const mpm_run *r, const mpm__calmed *c, int direction,
+                                   mpm_real V[3][MPM_SUPPORT])
+{
+    const int k = w->support[0], ky = w->support[1];
+    const int32_t *slot = mpm__run_nodes(w, r);
+    int a, d;
+    for (a = 0; a < k * ky * k; a++) {
+        const mpm_node *n = &w->node[slot[a]];
+        for (d = 0; d < 3; d++) V[d][a] = direction ? n->reaction[d] : n->momentum[d];
+    }
+    if (c->parts == 3 && r->flags & 63) mpm__turn(r, k, ky, V);
+    mpm__as_polynomial(k, ky, V);
+}
+
+/* To the forces of a run's nodes: sum m N f of the points' f and the mass, or of f = S direction. */
+MPM__KERNEL void mpm__calm_map_run(mpm_world *w, const mpm_run *r, int k, int ky, const mpm__calmed *c, int direction)
+{
+    const int32_t *slot = mpm__run_nodes(w, r);
+    mpm_real V[3][MPM_SUPPORT], F[3][MPM_SUPPORT] = {{0}}, M[MPM_SUPPORT] = {0}, N[MPM_SUPPORT], seen[3][MPM__LANES];
+    mpm__weights s;
+    int32_t at;
+    int n, p, a, d;
+    if (direction) mpm__calm_fetch(w, r, c, 1, V);
+    MPM__EACH_PIECE(r, at, n) {
+        mpm__weigh(w, r, at, n, k, ky, &s);
+        for (d = 0; d < c->parts && direction; d++) mpm__values(&s, k, ky, V[d], seen[d]);
+        for (p = 0; p < n; p++) {
+            const mpm_real m = w->points.mass[at + p];
+            mpm__products(&s, p, k, ky, N);
+            for (a = 0; a < k * ky * k && !direction; a++) M[a] += m * N[a];
+            for (d = 0; d < c->parts; d++) {
+                const mpm_real f = m * (direction ? seen[d][p] : mpm__calm_part(&w->points, c, d, at + p));
+                for (a = 0; a < k * ky * k; a++) F[d][a] += f * N[a];
+            }
+        }
+    }
+    if (c->parts == 3 && r->flags & 63) mpm__turn(r, k, ky, F);
+    for (a = 0; a < k * ky * k; a++) {
+        w->node[slot[a]].mass += M[a];
+        for (d = 0; d < 3; d++) w->node[slot[a]].force[d] += F[d][a];
+    }
+}
+
+/* ... of all runs of the body, without what sides forbid. */
+static inline void mpm__calm_map(mpm_world *w, const mpm__calmed *c, int direction)
+{
+    int32_t i;
+#define MPM__CALL(k, ky, hoop) mpm__calm_map_run(w, &w->run[i], k, ky, c, direction)
+    for (i = c->run; i < c->runs; i++) MPM__SPECIALISED(w, 0, MPM__CALL);
+#undef MPM__CALL
+    for (i = c->node; i < c->nodes; i++)
+        if (c->parts == 3 && w->node[i].flags) mpm__constrain(w, &w->node[i], w->node[i].force, NULL);
+}
+
+/* The next direction, conjugate to those before it. */
+static inline void mpm__calm_turn(mpm_world *w, mpm__calmed *c)
+{
+    int32_t i;
+    int d;
+    for (d = 0; d < c->parts; d++) {
+        const double before = c->left[d];
+        mpm_real keep;
+        c->left[d] = 0;
+        for (i = c->node; i < c->nodes; i++) {
+            const mpm_node *n = &w->node[i];
+            if (n->mass > 0) c->left[d] += (double)(n->velocity[d] * (n->velocity[d] / n->mass));
+        }
+        keep = (mpm_real)(before > 0 ? c->left[d] / before : 0);
+        for (i = c->node; i < c->nodes; i++) {
+            mpm_node *n = &w->node[i];
+            n->reaction[d] = (n->mass > 0 ? n->velocity[d] / n->mass : 0) + keep * n->reaction[d];
+        }
+    }
+}
+
+/* As far along the direction as is best. */
+static inline void mpm__calm_go(mpm_world *w, const mpm__calmed *c)
+{
+    int32_t i;
+    int d;
+    for (d = 0; d < c->parts; d++) {
+        const double enough = (double)MPM_EPSILON * (double)MPM_EPSILON * c->first[d];
+        double slope = 0;
+        mpm_real go;
+        for (i = c->node; i < c->nodes; i++) slope += (double)(w->node[i].reaction[d] * w->node[i].force[d]);
+        go = (mpm_real)(c->left[d] > enough && slope > 0 ? c->left[d] / slope : 0);
+        for (i = c->node; i < c->nodes; i++) {
+            mpm_node *n = &w->node[i];
+            n->momentum[d] += go * n->reaction[d];
+            n->velocity[d] -= go * n->force[d];
+            n->force[d] = 0;
+        }
+    }
+}
+
+/* Lifts f_I to the momentum of the points: at the beginning to their mean, which all directions then keep, but for the
+   round-off that is taken out at the end. Not in a part that a side holds somewhere. */
+static inline void mpm__calm_level(mpm_world *w, const mpm__calmed *c)
+{
+    int32_t i;
+    int d;
+    for (d = 0; d < c->parts; d++) {
+        double lacks = c->sum[d];
+        mpm_real lift;
+        for (i = c->node; i < c->nodes; i++) lacks -= (double)(w->node[i].mass * w->node[i].momentum[d]);
+        lift = (mpm_real)(c->held >> d & 1 ? 0 : lacks / c->mass);
+        for (i = c->node; i < c->nodes; i++) w->node[i].momentum[d] += lift;
+    }
+}
+
+/* The parts that sides hold at this node, as bits. */
+static inline int mpm__calm_held(const mpm_world *w, const mpm__calmed *c, const mpm_node *n)
+{
+    mpm_real free_parts[3] = {1, 1, 1};
+    int d, held = 0;
+    if (c->parts == 3) mpm__constrain(w, n, free_parts, NULL);
+    for (d = 0; d < 3; d++) held |= free_parts[d] < 1 ? 1 << d : 0;
+    return held;
+}
+
+/* Maps the points, and sums up what they map. */
+static inline void mpm__calm_begin(mpm_world *w, mpm__calmed *c)
+{
+    int32_t i;
+    int d;
+    mpm__calm_map(w, c, 0);
+    for (c->held = 0, c->mass = 0, d = 0; d < 3; d++) c->sum[d] = c->left[d] = 0;
+    for (i = c->node; i < c->nodes; i++) {
+        c->held |= mpm__calm_held(w, c, &w->node[i]);
+        for (c->mass += (double)w->node[i].mass, d = 0; d < 3; d++) c->sum[d] += (double)w->node[i].force[d];
+    }
+    mpm__calm_level(w, c);
+    for (i = c->node; i < c->nodes; i++)
+        for (d = 0; d < 3; d++) {
+            mpm_node *n = &w->node[i];
+            n->velocity[d] = n->force[d] - n->mass * n->momentum[d];
+            n->force[d] = 0;
+        }
+}
+
+/* f_I of the body's points. */
+static inline void mpm__calm_see(mpm_world *w, mpm__calmed *c, int steps)
+{
+    int step;
+    mpm__calm_begin(w, c);
+    for (step = 0; step < steps; step++) {
+        mpm__calm_turn(w, c);
+        if (step == 0) memcpy(c->first, c->left, sizeof c->first);
+        mpm__calm_map(w, c, 1);
+        mpm__calm_go(w, c);
+    }
+    mpm__calm_level(w, c);
+}
+
+/* Takes `share` of what is not seen from the velocity of point i. */
+static inline void mpm__calm_velocity(mpm_world *w, int32_t i, const mpm_real *rest, mpm_real share)
+{
+    mpm_points *q = &w->points;
+    const mpm_real heat = share * (1 - share / 2) * (rest[0] * rest[0] + rest[1] * rest[1] + rest[2] * rest[2]);
+    int d;
+    for (d = 0; d < 3; d++) {
+        q->v[d][i] -= share * rest[d];
+        w->ledger.impulse[d] -= (double)(q->mass[i] * share * rest[d]); /* of mirrors and fixed sides: else 0 in sum */
+    }
+    q->energy[i] += heat;
+    w->ledger.calm += (double)(q->mass[i] * heat);
+}
+
+/* ... from its pressure, by exchange of volume. */
+static inline void mpm__calm_pressure(mpm_world *w, const mpm_body_desc *b, int32_t i, mpm_real rest, mpm_real share)
+{
+    mpm_points *q = &w->points;
+    const mpm_real K = b->density * (b->wave_p * b->wave_p - MPM_R(4.0) / 3 * b->wave_s * b->wave_s);
+    const mpm_real volume = share * rest / (b->density * K); /* per mass */
+    int d;
+    q->energy[i] -= (mpm__mean_pressure(q, i) - rest) * volume;
+    q->density[i] /= 1 + q->density[i] * volume;
+    for (d = 0; d < 3; d++) q->stress[d][i] += share * rest;
+    w->ledger.calm += (double)(q->mass[i] * (1 - share / 2) * rest * volume);
+}
+
+MPM__KERNEL void mpm__calm_run(mpm_world *w, const mpm_run *r, int k, int ky, const mpm__calmed *c, mpm_real share)
+{
+    mpm_real V[3][MPM_SUPPORT], seen[3][MPM__LANES], rest[3];
+    mpm__weights s;
+    int32_t at;
+    int n, p, d;
+    mpm__calm_fetch(w, r, c, 0, V);
+    MPM__EACH_PIECE(r, at, n) {
+        mpm__weigh(w, r, at, n, k, ky, &s);
+        for (d = 0; d < c->parts; d++) mpm__values(&s, k, ky, V[d], seen[d]);
+        for (p = 0; p < n; p++) {
+            for (d = 0; d < c->parts; d++) rest[d] = mpm__calm_part(&w->points, c, d, at + p) - seen[d][p];
+            if (c->parts == 3) mpm__calm_velocity(w, at + p, rest, share);
+            else mpm__calm_pressure(w, &w->body[r->body].desc, at + p, rest[0], share);
+        }
+    }
+}
+
+/* Velocities or pressures of a body. Leaves its nodes as they were: empty. */
+static inline void mpm__calm_body(mpm_world *w, mpm__calmed *c, int parts, int steps, mpm_real share)
+{
+    const size_t bytes = sizeof w->node->momentum;
+    int32_t i;
+    c->parts = parts;
+    mpm__calm_see(w, c, steps);
+#define MPM__CALL(k, ky, hoop) mpm__calm_run(w, &w->run[i], k, ky, c, share)
+    for (i = c->run; i < c->runs; i++) MPM__SPECIALISED(w, 0, MPM__CALL);
+#undef MPM__CALL
+    for (i = c->node; i < c->nodes; i++) {
+        mpm_node *n = &w->node[i];
+        n->mass = 0;
+        memset(n->momentum, 0, bytes);
+        memset(n->velocity, 0, bytes);
+        memset(n->reaction, 0, bytes);
+    }
+}
+
+/* The share that dies out in this step: in short steps, where it reaches the next beat. */
+static inline mpm_real mpm__calm_share(const mpm_world *w)
+{
+    const mpm_real beat = w->desc.calm / MPM__CALM_BEATS;
+    mpm_real t = w->dt;
+    if (!(w->desc.calm > 0)) return 0;
+    if (t < beat) t = beat * (mpm_real)((int64_t)((w->time + t) / beat) - (int64_t)(w->time / beat));
+    return -mpm_expm1(-t / w->desc.calm);
+}
+
+MPM_API void mpm_calm(mpm_world *w)
+{
+    const mpm_real share = mpm__calm_share(w);
+    int32_t b;
+    mpm__calmed c;
+    memset(&c, 0, sizeof c);
+    for (b = 0; b < w->bodies && share > 0; b++) { /* runs and nodes lie in the order of bodies */
+        const mpm_body_desc *d = &w->body[b].desc;
+        c.run = c.runs;
+        c.node = c.nodes;
+        while (c.runs < w->runs && w->run[c.runs].body == b) c.runs++;
+        while (c.nodes < w->nodes && w->node[c.nodes].body == b) c.nodes++;
+        mpm__calm_body(w, &c, 3, MPM__CALM_VELOCITIES, share);
+        if (d->stress && d->wave_p * d->wave_p > MPM_R(4.0) / 3 * d->wave_s * d->wave_s)
+            mpm__calm_body(w, &c, 1, MPM__CALM_PRESSURES, share);
+    }
+}
+
 /* ---- to the nodes ------------------------------------------------------------------------- */
 
 /* What a sweep over the points does; two that follow each other share one sweep and its weights. */
 enum { MPM__P2G = 1, MPM__FORCES = 2, MPM__G2P = 4, MPM__MUSL = 8, MPM__STRESS = 16, MPM__MOVE = 32 };
 
 /* P_I += m_p v_p N_I of a piece of a run (A 3.24), and with mass m_I += m_p N_I (A 3.23). */
-MPM__KERNEL void mpm__momentum_piece(const mpm_points *q, const mpm__weights *s, int32_t at, int k, int ky, int nodes, int mass,
+MPM__KERNEL void mpm__momentum_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int mass,
                                      mpm_real *M, mpm_real P[3][MPM_SUPPORT])
 {
+    const mpm_points *q = &w->points;
+    const int nodes = mpm__reach(w);
     mpm_real N[MPM_SUPPORT];
     int p, a;
     for (p = 0; p < s->n; p++) {
@@ -1749,9 +2051,11 @@ MPM__KERNEL void mpm__momentum_piece(const mpm_points *q, const mpm__weights *s,
 }
 
 /* f_I -= (m_p / rho_p) sigma_p . grad N_I (A 3.25); in rings f_Ir -= (m_p / rho_p) sigma_hoop N_I / r_p too. */
-MPM__KERNEL void mpm__forces_piece(const mpm_points *q, const mpm__weights *s, int32_t at, int k, int ky, int nodes, int hoop,
+MPM__KERNEL void mpm__forces_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int hoop,
                                    mpm_real F[3][MPM_SUPPORT])
 {
+    const mpm_points *q = &w->points;
+    const int nodes = mpm__reach(w);
     mpm_real G[3][MPM_SUPPORT], N[MPM_SUPPORT];
     int p, a;
     for (p = 0; p < s->n; p++) {
@@ -1786,8 +2090,8 @@ MPM__KERNEL void mpm__to_nodes_run(mpm_world *w, const mpm_run *r, int k, int ky
     mpm__clear(k, ky, F);
     MPM__EACH_PIECE(r, at, n) {
         mpm__weigh(w, r, at, n, k, ky, &s);
-        if (what & MPM__P2G) mpm__momentum_piece(&w->points, &s, at, k, ky, w->support[0] * w->support[1] * w->support[2], 1, M, P);
-        if (what & MPM__FORCES) mpm__forces_piece(&w->points, &s, at, k, ky, w->support[0] * w->support[1] * w->support[2], hoop, F);
+        if (what & MPM__P2G) mpm__momentum_piece(w, &s, at, k, ky, 1, M, P);
+        if (what & MPM__FORCES) mpm__forces_piece(w, &s, at, k, ky, hoop, F);
     }
     if (what & MPM__P2G) {
         for (a = 0; a < k * ky * k; a++) w->node[slot[a]].mass += M[a];
@@ -2298,7 +2602,7 @@ static inline void mpm__pairs_at(mpm_world *w, int32_t i)
 /* Marks the runs that touch a contact node. */
 static inline void mpm__contact_runs(mpm_world *w)
 {
-    const int reach = w->support[0] * w->support[1] * w->support[2];
+    const int reach = mpm__reach(w);
     int32_t i;
     int s;
     for (i = 0; i < w->runs; i++)
@@ -2659,7 +2963,7 @@ MPM__KERNEL void mpm__velocities_run(mpm_world *w, const mpm_run *r, int k, int 
     MPM__EACH_PIECE(r, at, n) {
         mpm__weigh(w, r, at, n, k, ky, &s);
         if (what & MPM__G2P) mpm__add_values(&s, k, ky, A, dt, w->points.v, at);
-        if (what & MPM__MUSL) mpm__momentum_piece(&w->points, &s, at, k, ky, w->support[0] * w->support[1] * w->support[2], 0, NULL, P);
+        if (what & MPM__MUSL) mpm__momentum_piece(w, &s, at, k, ky, 0, NULL, P);
     }
     if (what & MPM__MUSL) mpm__scatter(w, r, k, ky, MPM__VELOCITY, P);
 }
@@ -2837,7 +3141,7 @@ static inline int mpm__run_touches(const mpm_world *w, const mpm_run *r)
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     int a;
-    for (a = 0; a < w->support[0] * w->support[1] * w->support[2]; a++)
+    for (a = 0; a < mpm__reach(w); a++)
         if (w->node[slot[a]].touch >= 0) return 1;
     return 0;
 }
@@ -2906,7 +3210,7 @@ static inline int mpm__run_is_cut(const mpm_world *w, const mpm_run *r)
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     int a;
-    for (a = 0; a < w->support[0] * w->support[1] * w->support[2]; a++) {
+    for (a = 0; a < mpm__reach(w); a++) {
         const int32_t touch = w->node[slot[a]].touch;
         const mpm_real *cut = touch < 0 ? NULL : w->touch[touch].cut;
         if (cut && (cut[0] < 0 || cut[0] > 0 || cut[1] < 0 || cut[1] > 0 || cut[2] < 0 || cut[2] > 0)) return 1;
@@ -3189,7 +3493,7 @@ static inline int mpm__run_slots(mpm_world *w, mpm_run *r, int32_t *slot)
 static inline mpm_status mpm__list_runs(mpm_world *w)
 {
     const int32_t nx = w->nodes_per_axis[0], ny = w->nodes_per_axis[1];
-    const int reach = w->support[0] * w->support[1] * w->support[2];
+    const int reach = mpm__reach(w);
     int32_t b, i;
     for (b = 0; b < w->bodies; b++) {
         const int32_t to = w->body[b].first + w->body[b].active;
@@ -4608,6 +4912,7 @@ MPM_API mpm_status mpm_desc_check(const mpm_desc *d, mpm_fault *f)
     if (s == MPM_OK) s = mpm_contact_check(&d->contact, f);
     if (s == MPM_OK) s = mpm_want(d->wall_friction >= 0, f, "wall_friction", d->wall_friction, -1);
     if (s == MPM_OK) s = mpm_want(d->mass_cutoff >= 0, f, "mass_cutoff", d->mass_cutoff, -1);
+    if (s == MPM_OK) s = mpm_want(d->calm >= 0, f, "calm", d->calm, -1);
     return s;
 }
 

@@ -412,6 +412,7 @@ MPM_API mpm_status mpm_bond_step(const mpm_bond *b, mpm_world *w, mpm_real dt)
 {
     mpm_status s = mpm_locate(w, dt), stressed;
     if (s < 0) return s;
+    mpm_calm(w);
     mpm_to_nodes(w);
     mpm_grid_update(w);
     mpm_contact_find(w);

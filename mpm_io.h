@@ -1623,6 +1623,7 @@ static inline void mpm__io_desc_text(mpm__io_page *t, const mpm_desc *d)
     mpm__io_words(t, "scheme", schemes, &scheme, 1);
     mpm__io_values(t, "gravity", d->gravity, NULL, 3);
     mpm__io_real(t, "mass_cutoff", d->mass_cutoff);
+    mpm__io_real(t, "calm", d->calm);
     mpm__io_whole(t, "user_fields", d->user_fields);
 }
 

@@ -1912,6 +1912,7 @@ MPM_API mpm_status mpm_surface_step(mpm_surfaces *s, mpm_world *w, mpm_real dt)
 {
     mpm_status st = mpm_locate(w, dt), later;
     if (st < 0) return st;
+    mpm_calm(w);
     mpm_to_nodes(w);
     if ((later = mpm_surface_contact(s, w)) < 0) {
         w->fault = s->fault;

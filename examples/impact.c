@@ -72,6 +72,8 @@ static int write_summary(const impact *s, const impact_result *r, const output *
     mpm_io_json_number(&j, "v_rest_filtered_relative_m_s", r->filtered_relative);
     mpm_io_json_number(&j, "v_rest_relative_m_s", r->relative);
     mpm_io_json_number(&j, "v_noise_m_s", r->rebound.noise);
+    mpm_io_json_number(&j, "v_quiet_percent", 100 * r->quiet_velocity);
+    mpm_io_json_number(&j, "p_quiet_percent", 100 * r->quiet_pressure);
     mpm_io_json_number(&j, "v_tangential_m_s", r->tangential);
     mpm_io_json_number(&j, "substrate_drift_m_s", r->substrate_drift);
     mpm_io_json_number(&j, "restitution_ratio", r->restitution);
@@ -107,6 +109,7 @@ static int write_summary(const impact *s, const impact_result *r, const output *
     mpm_io_json_number(&j, "energy_absorbed_fraction", case_share(w->ledger.absorbed, start));
     mpm_io_json_number(&j, "energy_contact_fraction", case_share(w->ledger.contact, start));
     mpm_io_json_number(&j, "energy_bond_fraction", case_share(w->ledger.hold, start));
+    mpm_io_json_number(&j, "energy_calm_fraction", case_share(w->ledger.calm, start));
     mpm_io_json_integer(&j, "floor_hits", (long long)w->tally[MPM_TALLY_BOND_FLOOR]);
     mpm_io_json_integer(&j, "bond_increments", (long long)w->tally[MPM_TALLY_BOND_GROWTH]);
     mpm_io_json_integer(&j, "shear_floor_hits", (long long)w->tally[MPM_TALLY_SHEAR_FLOOR]);
@@ -141,7 +144,8 @@ static void print_table(const impact *s, const impact_case *c, const impact_resu
     printf("  rebound velocity, mean          %10.3f m/s\n", r->rebound.mean);
     printf("  rebound velocity, |v| <= 60 m/s %10.3f m/s  (%.4f of the impact velocity)\n", r->rebound.filtered,
            r->restitution);
-    printf("  velocity noise in the particle  %10.3f m/s\n", r->rebound.noise);
+    printf("  velocity noise in the particle  %10.3f m/s; %.2f %% of its points within 5 m/s, %.2f %% within 0.5 GPa\n",
+           r->rebound.noise, 100 * r->quiet_velocity, 100 * r->quiet_pressure);
     if (fabs(c->angle) > 0)
         printf("  tangential velocity, mean       %10.3f m/s\n", r->tangential);
     printf("  substrate drift                 %10.3f m/s\n", r->substrate_drift);
@@ -170,6 +174,8 @@ static void print_table(const impact *s, const impact_case *c, const impact_resu
     printf("  energy: absorbed by dampers     %10.3f %%    lost in contact %.3f %%, in the bond %.3f %%\n",
            100 * case_share(w->ledger.absorbed, start), 100 * case_share(w->ledger.contact, start),
            100 * case_share(w->ledger.hold, start));
+    if (c->calm > 0)
+        printf("  energy: of noise, now heat      %10.3f %%\n", 100 * case_share(w->ledger.calm, start));
     printf("  errors: mass %.1e, momentum %.1e, energy unaccounted %.3f %%\n", r->mass_error, r->momentum_error,
            100 * r->energy_unaccounted);
     printf("  bond floor acted                %10lld times of %lld\n", (long long)w->tally[MPM_TALLY_BOND_FLOOR],
@@ -199,6 +205,7 @@ static int run(impact *s, const impact_case *c, output *o, impact_stops *stops)
             continue;
         }
         if (mpm_locate(w, s->dt) < 0) return report(&w->fault, "locate"); /* points in cell order, their nodes */
+        mpm_calm(w);                                 /* with --calm */
         mpm_p2g(w);                                  /* A 3.23, 3.24 */
         mpm_forces(w);                               /* A 3.25 - 3.27, 3.45, 3.46 */
         mpm_grid_update(w);                          /* A 3.28 */

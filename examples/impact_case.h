@@ -29,6 +29,7 @@ typedef struct impact_case {
     double cell, spacing;                          /* um */
     double substrate_diameter, substrate_height;   /* um */
     double time, dt_factor;                        /* ns; of the critical step of a 0.5 um cell */
+    double calm;                                   /* ns in which what the grid does not see dies out; 0: never */
     double gc, gdot, floor;                        /* energy bond: J/m2, J/m2/us, 1 */
     double bond_length, bond_width;                /* its length, um (0: the cell); D from free to held */
     double eps_c, epsdot_c;                        /* strain bond: 1, 1/us */
@@ -206,6 +207,7 @@ static inline int impact_check(const impact_case *c, char *m, size_t n)
                         c->substrate_height, "must be in (0, 1e6) um", m, n) &&
            case_wants(c->time > 0 && c->time < 1e9, "time", c->time, "must be > 0 ns", m, n) &&
            case_wants(c->dt_factor > 0 && c->dt_factor <= 1, "dt-factor", c->dt_factor, "must be in (0, 1]", m, n) &&
+           case_wants(c->calm >= 0 && c->calm < 1e9, "calm", c->calm, "must be > 0 ns, or 0 for never", m, n) &&
            case_wants(c->gc > 0 && c->gc < 1e30, "gc", c->gc, "must be > 0 J/m2", m, n) &&
            case_wants(c->gdot > 0 && c->gdot < 1e30, "gdot", c->gdot, "must be > 0 J/m2/us", m, n) &&
            case_wants(c->floor > 0 && c->floor < 1e30, "floor", c->floor, "must be > 0", m, n) &&
@@ -272,6 +274,7 @@ static inline mpm_desc impact_grid(const impact_case *c)
     d.contact.touch = c->touch;
     d.contact.normal = (mpm_normal_rule)word_place(MPM_NAMES(MPM_NORMAL_LIST), c->normal);
     d.scheme = (mpm_scheme)word_place(MPM_NAMES(MPM_SCHEME_LIST), c->scheme);
+    d.calm = (mpm_real)(c->calm * 1e-3);
     return d;
 }
 
@@ -438,6 +441,8 @@ typedef struct impact_result {
     double relative, filtered_relative;                /* rebound less that drift; filtered as seen from the ground,
                                                           as source A does: mpm_rebound_from filters in its frame */
     double tangential;                                 /* mean v_x of the particle */
+    double quiet_velocity, quiet_pressure;             /* share of its points within 5 m/s of its mean velocity; within
+                                                          0.5 GPa of no pressure */
     double flattening;                                 /* see mpm_splat; of the points within 60 m/s of the mean:
                                                           ejected ones fly far */
     double crater;                                     /* see mpm_splat */
@@ -456,6 +461,28 @@ static inline int impact_copies(const impact *s)
     const mpm_side *side = s->world.desc.side;
     if (s->world.desc.geometry != MPM_3D) return 1;
     return (side[0] == MPM_SIDE_SYMMETRY ? 2 : 1) * (side[2] == MPM_SIDE_SYMMETRY ? 2 : 1);
+}
+
+/* How quiet the particle is. */
+static inline void impact_quiet(const mpm_world *w, impact_result *r)
+{
+    const mpm_points *q = &w->points;
+    const mpm_body *b = &w->body[IMPACT_PARTICLE];
+    int32_t i, slow = 0, free_of = 0;
+    int a;
+    for (i = b->first; i < b->first + b->active; i++) {
+        double speed = 0, stress = 0;
+        for (a = 0; a < 3; a++) {
+            const int mirror = w->desc.side[2 * a] == MPM_SIDE_SYMMETRY;
+            const double mean = r->particle.momentum[a] / r->particle.mass;
+            speed = hypot(speed, (double)q->v[a][i] - (mirror ? 0 : mean));
+            stress += (double)q->stress[a][i];
+        }
+        slow += speed <= 5;
+        free_of += fabs(stress / 3) <= 500;
+    }
+    r->quiet_velocity = case_share(slow, b->active);
+    r->quiet_pressure = case_share(free_of, b->active);
 }
 
 static inline impact_result impact_measure(const impact *s, const impact_case *c)
@@ -477,6 +504,7 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
     r.relative = r.rebound.mean - r.substrate_drift;
     r.filtered_relative = r.rebound.filtered - r.substrate_drift;
     r.tangential = w->desc.side[0] == MPM_SIDE_SYMMETRY ? 0 : r.particle.momentum[0] / r.particle.mass;
+    impact_quiet(w, &r);
     r.flattening = mpm_splat_measure(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE,
                                      (mpm_real)(60 + fabs(r.rebound.mean))).flattening;
     r.crater = mpm_splat_measure(w, IMPACT_PARTICLE, IMPACT_SUBSTRATE, MPM_R(1e15)).crater; /* deep points move */

@@ -33,6 +33,8 @@ static inline int impact_options(impact_case *c, option *o)
     option_add(o, &n, "substrate-diameter", OPTION_REAL, &c->substrate_diameter, "um");
     option_add(o, &n, "substrate-height", OPTION_REAL, &c->substrate_height, "um");
     option_add(o, &n, "time", OPTION_REAL, &c->time, "simulated time, ns");
+    option_add(o, &n, "calm", OPTION_REAL, &c->calm,
+               "time in which noise that the grid does not see dies out, ns; 0: never (docs/quiet.md)");
     option_add(o, &n, "dt-factor", OPTION_REAL, &c->dt_factor, "time step over the critical step of a 0.5 um cell");
     option_add_word(o, &n, "bond", &c->bond, IMPACT_BONDS, "what makes the bond grow; interface: with contact surface");
     option_add_word(o, &n, "bond-average", &c->bond_average, MPM_NAMES(MPM_BOND_AVERAGE_LIST),

@@ -105,6 +105,7 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
     do {
         progress_part(&line, "pull, if they do not part before:", p->separation / o->distance);
         if (mpm_locate(w, s->dt) < 0) return report(&w->fault, "locate");
+        mpm_calm(w);
         mpm_p2g(w);
         mpm_forces(w);
         if (hold(s, p) < 0) return report(&w->fault, "contact");

@@ -1061,7 +1061,7 @@ static void test_room(void)
     for (d = 0; d < 3; d++) w.desc.cells[d] = -2147483647;
     for (d = 0; d < 6; d++) w.desc.side[d] = MPM_SIDE_SYMMETRY;
     w.desc.geometry = MPM_AXISYMMETRIC;
-    w.desc.cell = w.desc.wall_friction = w.desc.mass_cutoff = longest;
+    w.desc.cell = w.desc.wall_friction = w.desc.mass_cutoff = w.desc.calm = longest;
     used[2] = mpm_io_world_text(text, sizeof text, &w);
     w.bodies = 0;
     used[1] = mpm_io_world_text(text, sizeof text, &w);

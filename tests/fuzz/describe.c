@@ -34,6 +34,7 @@ static void change_desc(fuzz *f, mpm_desc *d)
     change_contact(f, &d->contact);
     fuzz_reals(f, d->gravity, 3);
     FUZZ_REAL(f, d->mass_cutoff);
+    FUZZ_REAL(f, d->calm);
     d->points = fuzz_int(f, d->points);
     d->bodies = fuzz_int(f, d->bodies);
     d->rules = fuzz_int(f, d->rules);
@@ -174,6 +175,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         mpm_status status = MPM_OK;
         if (pulled) {
             if ((status = mpm_locate(&s.world, dt)) < 0) break;
+            mpm_calm(&s.world);
             mpm_p2g(&s.world);
             mpm_forces(&s.world);
             mpm_grid_update(&s.world);

@@ -1666,7 +1666,7 @@ static inline mpm_status mpm__spray_fly_block(mpm_spray *s, int32_t first, int c
         if (mpm__spray_set_off(s, i, &from[n], &to[n])) n++;
         else if ((status = mpm__spray_take(s, i, &from[n], &to[n])) < 0) return status;
     }
-    mpm__spray_pulls(s, mpm_spray_time(s) + s->desc.dt, particle, to, pull, n);
+    if (n > 0) mpm__spray_pulls(s, mpm_spray_time(s) + s->desc.dt, particle, to, pull, n);
     for (m = 0; m < n; m++) {
         if (mpm__spray_iterate(s, particle[m], &from[m], &to[m], &pull[m]) != MPM_OK) result = MPM_NOT_CONVERGED;
         if ((status = mpm__spray_take(s, particle[m], &from[m], &to[m])) < 0) return status;

@@ -238,13 +238,11 @@ static int start(impact *s, const impact_case *c, output *o, impact_stops *stops
     return 1;
 }
 
-/* Everything that is written at the end. */
+/* Everything that is written at the end, or where the run is stopped. */
 static int finish(const impact *s, const impact_case *c, output *o, const option *options, int n)
 {
     const impact_result r = impact_measure(s, c);
-    char path[PATH_BYTES];
     if (!write_summary(s, &r, o, options, n) || (o->frames > 0 && !write_picture(s, c, o))) return 0;
-    remove(file_in(o->folder, "checkpoint.bin", path, sizeof path));
     if (o->quiet) return 1;
     print_table(s, c, &r, o->cpu);
     printf("\n  %s/summary.json%s\n", o->folder, o->frames > 0 ? ", impact.png, impact.pvd" : "");
@@ -261,7 +259,7 @@ static int carry_out(int argc, char **argv)
     const char *about = "A metal particle hits a metal plate: material point method with bonding.\n"
                         "Writes summary.json, impact.png, impact.pvd (ParaView) and frames into the output folder.";
     impact_stops stops = {0, 0, 0};
-    char message[300];
+    char message[300], path[PATH_BYTES];
     impact s;
     int parsed, status, resume = 0;
     output_options(&o, options, &n);
@@ -277,8 +275,9 @@ static int carry_out(int argc, char **argv)
         !impact_begin(&s, &c, message, sizeof message))
         return !complain(message);
     status = start(&s, &c, &o, &stops, resume) ? run(&s, &c, &o, &stops) : 0;
+    if (status != 0 && !finish(&s, &c, &o, options, n)) status = 0;
     if (status < 0) print_again(argc, argv, "--resume", (long long)s.world.steps, (long long)s.steps);
-    if (status > 0) status = finish(&s, &c, &o, options, n);
+    if (status > 0) remove(file_in(o.folder, "checkpoint.bin", path, sizeof path));
     impact_end(&s);
     return status > 0 ? 0 : status < 0 ? STOPPED : 1;
 }

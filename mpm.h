@@ -38,7 +38,7 @@
      points, bodies, grid      mpm_points, mpm_body, mpm_node, mpm_run, mpm_pair, mpm_ledger, mpm_world
      setting up                mpm_init, mpm_body_add, mpm_body_add_points, mpm_contact_set, mpm_field_take
      the step                  mpm_step = locate, calm, p2g, forces, grid_update, contact_find, contact_apply, g2p,
-                               musl, stress, move
+                               musl, stress, move; two in one sweep: mpm_to_nodes, _to_points, _stress_and_move
      between the phases        mpm_support_of, mpm_support_at, mpm_push, mpm_node_push, mpm_pair_push: for extensions
      looking at it, restart    mpm_body_totals; mpm_blobs, mpm_restored
      implementation            in the order of the step; then locate, memory, shapes, bodies, checks
@@ -1026,7 +1026,6 @@ MPM_API const char *mpm_version(void);
 #endif
 
 #define MPM__LANES 32   /* points of a run treated together */
-#define MPM__WIDE 8     /* ... of which so many side by side, in loops without a rest */
 #ifdef MPM_FLOAT
 #define MPM__HAIR MPM_R(1e-5) /* cells; see mpm__weights_axis */
 #else
@@ -1081,11 +1080,12 @@ typedef struct mpm__weights {
     mpm_real dN[3][4][MPM__LANES];
 } mpm__weights;
 
-/* One direction: t is the distance from the base node in cells, n a multiple of MPM__WIDE. The linear hat, 1 - |e| at e
-   cells from the node (A 3.20). A point on a grid plane would give its far node a gradient but no mass, hence no
-   velocity: it is kept a hair's breadth inside. */
-MPM__KERNEL void mpm__hats(mpm__weights *s, int axis, int n, const mpm_real *t, mpm_real inv)
+/* One direction: t is the distance from the base node in cells. The linear hat, 1 - |e| at e cells from the node
+   (A 3.20). A point on a grid plane would give its far node a gradient but no mass, hence no velocity: it is kept a
+   hair's breadth inside. */
+MPM__KERNEL void mpm__hats(mpm__weights *s, int axis, const mpm_real *t, mpm_real inv)
 {
+    const int n = s->n;
     int p;
     for (p = 0; p < n; p++) {
         const mpm_real in = t[p] > MPM__HAIR ? t[p] : MPM__HAIR, u = in < 1 - MPM__HAIR ? in : 1 - MPM__HAIR;
@@ -1098,9 +1098,10 @@ MPM__KERNEL void mpm__hats(mpm__weights *s, int axis, int n, const mpm_real *t, 
 
 /* The hat averaged over a point of half size l cells (uGIMP): 1 - (e^2 + l^2)/(2 l) for |e| < l, 1 - |e| up to 1 - l,
    (1 + l - |e|)^2/(4 l) up to 1 + l; over a whole cell, l = 1/2, it is the quadratic B-spline. */
-static inline void mpm__averaged_hats(mpm__weights *s, int axis, int n, const mpm_real *t, mpm_real l, mpm_real inv)
+static inline void mpm__averaged_hats(mpm__weights *s, int axis, const mpm_real *t, mpm_real l, mpm_real inv)
 {
     const mpm_real half = 1 / (2 * l), quarter = half / 2, steep = inv / l;
+    const int n = s->n;
     int p, i;
     for (i = 0; i < 3; i++)
         for (p = 0; p < n; p++) {
@@ -1114,9 +1115,10 @@ static inline void mpm__averaged_hats(mpm__weights *s, int axis, int n, const mp
 }
 
 /* The cubic B-spline, 2/3 - e^2 + |e|^3/2 for |e| < 1, (2 - |e|)^3/6 up to 2. */
-static inline void mpm__cubics(mpm__weights *s, int axis, int n, const mpm_real *t, mpm_real inv)
+static inline void mpm__cubics(mpm__weights *s, int axis, const mpm_real *t, mpm_real inv)
 {
     const mpm_real sixth = MPM_R(1.0) / 6, two_thirds = MPM_R(2.0) / 3, half = inv / 2;
+    const int n = s->n;
     int p;
     for (p = 0; p < n; p++) { /* t - 1 and 2 - t are the distances from the two inner nodes */
         const mpm_real u = t[p] - 1, v = 2 - t[p];
@@ -1132,8 +1134,9 @@ static inline void mpm__cubics(mpm__weights *s, int axis, int n, const mpm_real 
 }
 
 /* The direction that two dimensions have not. */
-static inline void mpm__ones(mpm__weights *s, int axis, int n)
+static inline void mpm__ones(mpm__weights *s, int axis)
 {
+    const int n = s->n;
     int p;
     for (p = 0; p < n; p++) {
         s->N[axis][0][p] = 1;
@@ -1143,11 +1146,10 @@ static inline void mpm__ones(mpm__weights *s, int axis, int n)
 
 MPM__KERNEL void mpm__weights_axis(mpm__weights *s, int axis, int k, const mpm_real *t, mpm_real l, mpm_real inv)
 {
-    const int n = (s->n + MPM__WIDE - 1) / MPM__WIDE * MPM__WIDE; /* the last ones stand for no point */
-    if (k == 1) mpm__ones(s, axis, n);
-    else if (k == 2) mpm__hats(s, axis, n, t, inv);
-    else if (k == 3) mpm__averaged_hats(s, axis, n, t, l, inv);
-    else mpm__cubics(s, axis, n, t, inv);
+    if (k == 1) mpm__ones(s, axis);
+    else if (k == 2) mpm__hats(s, axis, t, inv);
+    else if (k == 3) mpm__averaged_hats(s, axis, t, l, inv);
+    else mpm__cubics(s, axis, t, inv);
 }
 
 /* Edge of the cube over which a body's functions average the hat [cells]. */
@@ -1168,7 +1170,6 @@ MPM__KERNEL void mpm__weigh(const mpm_world *w, const mpm_run *r, int32_t first,
         const mpm_real *x = w->points.x[d] + first, o = w->desc.origin[d];
         const mpm_real base = (mpm_real)(r->base[d] - w->ghost);
         for (p = 0; p < n; p++) t[p] = (x[p] - o) * inv - base;
-        for (; p % MPM__WIDE; p++) t[p] = 0;
         mpm__weights_axis(s, d, d == 1 ? ky : k, t, l, inv);
     }
 }
@@ -4703,7 +4704,7 @@ static inline void mpm__put_cloud(mpm_world *w, const mpm_body_desc *d, const mp
 /* The box around a cloud, half a spacing wide of it, as a shape that contains nothing. */
 static inline mpm_shape mpm__cloud_extent(const mpm_world *w, const mpm_cloud *c, mpm_real spacing)
 {
-    mpm_real low[3], high[3], x[3];
+    mpm_real low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, x[3];
     int32_t i;
     int a;
     for (i = 0; i < c->count; i++) {

@@ -28,6 +28,7 @@
 
    CONTENTS
      choices                   the lists MPM_STRENGTH_LIST, MPM_SHEAR_LIST, MPM_MELT_LIST, MPM_EOS_LIST, ...
+     functions in lanes        mpm_lane_exp, _expm1, _log, _pow, _erf: for laws over arrays
      parameters                mpm_material; laws of your own: mpm_strength_fn, mpm_eos_fn
      presets                   mpm_material_default, _preset, _model, _preset_count, _preset_name, _check
      the laws, one point       _flow, _flow_stress, _shear_modulus, _melt_temperature, _melting_point, _melts_at,
@@ -240,7 +241,7 @@ MPM__KERNEL mpm_real mpm_lane_log(mpm_real x)
 /* x^y, x >= 0, within 2 (1 + |y ln x|) eps; x as in mpm_lane_log. */
 MPM__KERNEL mpm_real mpm_lane_pow(mpm_real x, mpm_real y) { return mpm_lane_exp(y * mpm_lane_log(x)); }
 
-/* erf x and, in *bell, exp(-x^2), both within 2 eps of 1. With t = (x - 3)/(x + 3), exp(x^2) erfc(x) (1 + 2 x) is a
+/* erf x and, in *bell, exp(-x^2), within 3 and 2 eps of 1. With t = (x - 3)/(x + 3), exp(x^2) erfc(x) (1 + 2 x) is a
    polynomial in t, fitted here in 50 digits at the zeros of a Chebyshev polynomial for 0 <= x <= 6, beyond which
    erf x is 1 (J. L. Schonfelder, Math. Comp. 32 (1978) 1232, for the form). */
 MPM__KERNEL mpm_real mpm_lane_erf(mpm_real x, mpm_real *bell)

@@ -131,8 +131,9 @@ UNITS    = $(filter-out $(DOUBLES) tests/60_% tests/61_% tests/63_% tests/70_%,$
 coverage: build/pull ## lines and branches of the headers that the unit tests reach: at least 98 % of the lines
 	@sh tests/coverage.sh $(JOBS) $(UNITS)
 
-bench: $(BENCH) ## speed, as ratios measured in one run
+bench: $(BENCH) build/bench_impact ## speed, as ratios measured in one run: writes docs/performance.md (3 minutes)
 	@for b in $(BENCH); do $$b || exit 1; done
+	@sh bench/performance.sh
 
 # One run of bench/step takes half a minute; N of them for each of the two.
 N ?= 5

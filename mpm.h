@@ -227,12 +227,12 @@ typedef struct mpm_fault {
 #define MPM_PI MPM_R(3.14159265358979323846)
 #define MPM_ALIGN 64 /* bytes: of what mpm_carve hands out */
 
-/* What must be inlined to be fast: into loops that are to be done several points at a time, or with the support of
-   the shape function and the geometry, passed as constants, into specialised code. */
+/* For functions that must be inlined to be fast: into loops that are to be done several points at a time, or, with
+   constants for arguments, into specialised code. */
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(MPM_NO_INLINE)
-#define MPM__KERNEL static inline __attribute__((always_inline))
+#define MPM_KERNEL static inline __attribute__((always_inline))
 #else
-#define MPM__KERNEL static inline
+#define MPM_KERNEL static inline
 #endif
 
 /* mpm_sqrt(x), mpm_exp(x), ...: libm in mpm_real. */
@@ -898,7 +898,7 @@ MPM_API void mpm_move(mpm_world *w);
 MPM_API void mpm_to_nodes(mpm_world *w);               /* mpm_p2g and mpm_forces */
 MPM_API void mpm_to_points(mpm_world *w);              /* mpm_g2p and mpm_musl */
 
-/* mpm_stress and mpm_move. On an error of mpm_stress, which it returns, some points have been moved. */
+/* mpm_stress and mpm_move. On an error of mpm_stress, which it returns, some points have been moved. Test: 71_step. */
 MPM_API mpm_status mpm_stress_and_move(mpm_world *w);
 
 /* ---- between the phases: what extensions use ------------------------------------------------ */
@@ -1083,7 +1083,7 @@ typedef struct mpm__weights {
 /* One direction: t is the distance from the base node in cells. The linear hat, 1 - |e| at e cells from the node
    (A 3.20). A point on a grid plane would give its far node a gradient but no mass, hence no velocity: it is kept a
    hair's breadth inside. */
-MPM__KERNEL void mpm__hats(mpm__weights *s, int axis, const mpm_real *t, mpm_real inv)
+MPM_KERNEL void mpm__hats(mpm__weights *s, int axis, const mpm_real *t, mpm_real inv)
 {
     const int n = s->n;
     int p;
@@ -1144,7 +1144,7 @@ static inline void mpm__ones(mpm__weights *s, int axis)
     }
 }
 
-MPM__KERNEL void mpm__weights_axis(mpm__weights *s, int axis, int k, const mpm_real *t, mpm_real l, mpm_real inv)
+MPM_KERNEL void mpm__weights_axis(mpm__weights *s, int axis, int k, const mpm_real *t, mpm_real l, mpm_real inv)
 {
     if (k == 1) mpm__ones(s, axis);
     else if (k == 2) mpm__hats(s, axis, t, inv);
@@ -1153,13 +1153,13 @@ MPM__KERNEL void mpm__weights_axis(mpm__weights *s, int axis, int k, const mpm_r
 }
 
 /* Edge of the cube over which a body's functions average the hat [cells]. */
-MPM__KERNEL mpm_real mpm__point_size(const mpm_world *w, int32_t body)
+MPM_KERNEL mpm_real mpm__point_size(const mpm_world *w, int32_t body)
 {
     return w->desc.basis == MPM_QUADRATIC ? 1 : w->body[body].desc.spacing * (1 / w->desc.cell);
 }
 
 /* Weights of points [first, first + n) of run r. */
-MPM__KERNEL void mpm__weigh(const mpm_world *w, const mpm_run *r, int32_t first, int n, int k, int ky,
+MPM_KERNEL void mpm__weigh(const mpm_world *w, const mpm_run *r, int32_t first, int n, int k, int ky,
                             mpm__weights *s)
 {
     const mpm_real inv = 1 / w->desc.cell, l = mpm__point_size(w, r->body) / 2;
@@ -1175,7 +1175,7 @@ MPM__KERNEL void mpm__weigh(const mpm_world *w, const mpm_run *r, int32_t first,
 }
 
 /* The product weights of point p at all nodes of its support. */
-MPM__KERNEL void mpm__products(const mpm__weights *s, int p, int k, int ky, mpm_real *N)
+MPM_KERNEL void mpm__products(const mpm__weights *s, int p, int k, int ky, mpm_real *N)
 {
     int ix, iy, iz;
     for (iz = 0; iz < k; iz++)
@@ -1186,7 +1186,7 @@ MPM__KERNEL void mpm__products(const mpm__weights *s, int p, int k, int ky, mpm_
 }
 
 /* ... and their gradients G[0], G[1], G[2]. */
-MPM__KERNEL void mpm__gradients(const mpm__weights *s, int p, int k, int ky, mpm_real G[3][MPM_SUPPORT])
+MPM_KERNEL void mpm__gradients(const mpm__weights *s, int p, int k, int ky, mpm_real G[3][MPM_SUPPORT])
 {
     int ix, iy, iz;
     for (iz = 0; iz < k; iz++)
@@ -1204,7 +1204,7 @@ MPM__KERNEL void mpm__gradients(const mpm__weights *s, int p, int k, int ky, mpm
 
 /* Nodal values of linear functions turned into the coefficients of their polynomial 1, x, z, xz (in 3D 1, x, y, xy, z,
    xz, yz, xyz) in the cell: a point then costs half. Others stay as they are. */
-MPM__KERNEL void mpm__as_polynomial(int k, int ky, mpm_real V[3][MPM_SUPPORT])
+MPM_KERNEL void mpm__as_polynomial(int k, int ky, mpm_real V[3][MPM_SUPPORT])
 {
     int d, a, stride;
     if (k != 2) return;
@@ -1215,7 +1215,7 @@ MPM__KERNEL void mpm__as_polynomial(int k, int ky, mpm_real V[3][MPM_SUPPORT])
 }
 
 /* c0 + c1 x + (c2 + c3 x) z of a plane of cells, in 3D with y for z, and that of the upper face times z. */
-MPM__KERNEL mpm_real mpm__polynomial(const mpm__weights *s, int p, int ky, const mpm_real *c)
+MPM_KERNEL mpm_real mpm__polynomial(const mpm__weights *s, int p, int ky, const mpm_real *c)
 {
     const mpm_real x = s->N[0][1][p], z = s->N[2][1][p], y = ky > 1 ? s->N[1][1][p] : z;
     const mpm_real low = (c[0] + x * c[1]) + y * (c[2] + x * c[3]);
@@ -1223,7 +1223,7 @@ MPM__KERNEL mpm_real mpm__polynomial(const mpm__weights *s, int p, int ky, const
 }
 
 /* ... and its gradient. */
-MPM__KERNEL mpm_real mpm__polynomial_gradient(const mpm__weights *s, int p, int ky, const mpm_real *c, mpm_real *g)
+MPM_KERNEL mpm_real mpm__polynomial_gradient(const mpm__weights *s, int p, int ky, const mpm_real *c, mpm_real *g)
 {
     const mpm_real x = s->N[0][1][p], z = s->N[2][1][p], y = ky > 1 ? s->N[1][1][p] : z, inv = s->dN[0][1][p];
     const mpm_real c0 = c[0] + x * c[1], c2 = c[2] + x * c[3], c1 = c[1] + y * c[3], low = c0 + y * c2;
@@ -1242,7 +1242,7 @@ MPM__KERNEL mpm_real mpm__polynomial_gradient(const mpm__weights *s, int p, int 
 
 /* Sums over the support of V N at the points of a piece, direction by direction: with k and ky constants no loop is
    left but that over the points. */
-MPM__KERNEL void mpm__sums(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum)
+MPM_KERNEL void mpm__sums(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum)
 {
     int ix, iy, iz, p;
     for (p = 0; p < s->n; p++) {
@@ -1261,7 +1261,7 @@ MPM__KERNEL void mpm__sums(const mpm__weights *s, int k, int ky, const mpm_real 
 }
 
 /* ... and the sums of V grad N: g[0], g[1], g[2]. */
-MPM__KERNEL void mpm__gradient_sums(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum,
+MPM_KERNEL void mpm__gradient_sums(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum,
                                     mpm_real (*g)[MPM__LANES])
 {
     int ix, iy, iz, p;
@@ -1310,7 +1310,7 @@ static inline void mpm__wide_gradient_sums(const mpm__weights *s, int k, int ky,
 }
 
 /* The same of V from mpm__as_polynomial. */
-MPM__KERNEL void mpm__values(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum)
+MPM_KERNEL void mpm__values(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum)
 {
     int p;
     if (k != 2) mpm__wide_sums(s, k, ky, V, sum);
@@ -1318,7 +1318,7 @@ MPM__KERNEL void mpm__values(const mpm__weights *s, int k, int ky, const mpm_rea
         for (p = 0; p < s->n; p++) sum[p] = mpm__polynomial(s, p, ky, V);
 }
 
-MPM__KERNEL void mpm__values_gradient(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum,
+MPM_KERNEL void mpm__values_gradient(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum,
                                       mpm_real (*g)[MPM__LANES])
 {
     int p;
@@ -1335,15 +1335,15 @@ MPM__KERNEL void mpm__values_gradient(const mpm__weights *s, int k, int ky, cons
 
 /* Nodes of a support. No constant to the compiler: it then does the sums of several nodes at a time, point by point,
    rather than of several points, which have to be added in order. */
-MPM__KERNEL int mpm__reach(const mpm_world *w) { return w->support[0] * w->support[1] * w->support[2]; }
+MPM_KERNEL int mpm__reach(const mpm_world *w) { return w->support[0] * w->support[1] * w->support[2]; }
 
-MPM__KERNEL const int32_t *mpm__run_nodes(const mpm_world *w, const mpm_run *r)
+MPM_KERNEL const int32_t *mpm__run_nodes(const mpm_world *w, const mpm_run *r)
 {
     return w->slot + (size_t)(r - w->run) * (size_t)mpm__reach(w);
 }
 
 /* 1 if node a of a run is the image of its slot behind a plane across axis d, 2 if behind a fixed side; else 0. */
-MPM__KERNEL int mpm__behind(const mpm_run *r, int a, int d, int k, int ky)
+MPM_KERNEL int mpm__behind(const mpm_run *r, int a, int d, int k, int ky)
 {
     const int i[3] = {a % k, a / k % ky, a / k / ky};
     const int last = i[d] == (d == 1 ? ky : k) - 1 ? r->flags >> (3 + d) & 129 : 0;
@@ -1352,13 +1352,13 @@ MPM__KERNEL int mpm__behind(const mpm_run *r, int a, int d, int k, int ky)
 }
 
 /* -1 where component d of a place is turned round in the image that node a of a run is. */
-MPM__KERNEL mpm_real mpm__turned(const mpm_run *r, int a, int d, int k, int ky)
+MPM_KERNEL mpm_real mpm__turned(const mpm_run *r, int a, int d, int k, int ky)
 {
     return mpm__behind(r, a, d, k, ky) ? MPM_R(-1.0) : MPM_R(1.0);
 }
 
 /* The same of a motion: across a symmetry plane the normal component, across a fixed side all. */
-MPM__KERNEL mpm_real mpm__mirror(const mpm_run *r, int a, int d, int k, int ky)
+MPM_KERNEL mpm_real mpm__mirror(const mpm_run *r, int a, int d, int k, int ky)
 {
     mpm_real sign = 1;
     int e;
@@ -1372,7 +1372,7 @@ MPM__KERNEL mpm_real mpm__mirror(const mpm_run *r, int a, int d, int k, int ky)
 /* Which vector of a node a sweep fetches or adds to. */
 typedef enum mpm__vector { MPM__MOMENTUM, MPM__FORCE, MPM__VELOCITY } mpm__vector;
 
-MPM__KERNEL mpm_real *mpm__node_vector(mpm_node *n, mpm__vector which)
+MPM_KERNEL mpm_real *mpm__node_vector(mpm_node *n, mpm__vector which)
 {
     switch (which) {
     case MPM__MOMENTUM: return n->momentum;
@@ -1382,7 +1382,7 @@ MPM__KERNEL mpm_real *mpm__node_vector(mpm_node *n, mpm__vector which)
 }
 
 /* Nothing yet at the nodes of a run. */
-MPM__KERNEL void mpm__clear(int k, int ky, mpm_real V[3][MPM_SUPPORT])
+MPM_KERNEL void mpm__clear(int k, int ky, mpm_real V[3][MPM_SUPPORT])
 {
     int a, d;
     for (d = 0; d < 3; d++)
@@ -1398,7 +1398,7 @@ static inline void mpm__turn(const mpm_run *r, int k, int ky, mpm_real V[3][MPM_
 }
 
 /* Adds V, summed over points of a run, to its nodes. */
-MPM__KERNEL void mpm__scatter(mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which,
+MPM_KERNEL void mpm__scatter(mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which,
                               mpm_real V[3][MPM_SUPPORT])
 {
     const int32_t *slot = mpm__run_nodes(w, r);
@@ -1412,7 +1412,7 @@ MPM__KERNEL void mpm__scatter(mpm_world *w, const mpm_run *r, int k, int ky, mpm
 
 /* Fetches a vector of a run's nodes, divided by the nodal mass if per_mass. Nodes lighter than the
    cutoff give zero. */
-MPM__KERNEL void mpm__gather(const mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which, int per_mass,
+MPM_KERNEL void mpm__gather(const mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which, int per_mass,
                              mpm_real V[3][MPM_SUPPORT])
 {
     const int32_t *slot = mpm__run_nodes(w, r);
@@ -1432,7 +1432,7 @@ MPM__KERNEL void mpm__gather(const mpm_world *w, const mpm_run *r, int k, int ky
 }
 
 /* ... as mpm__value wants it. */
-MPM__KERNEL void mpm__gather_polynomial(const mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which,
+MPM_KERNEL void mpm__gather_polynomial(const mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which,
                                         int per_mass, mpm_real V[3][MPM_SUPPORT])
 {
     mpm__gather(w, r, k, ky, which, per_mass, V);
@@ -1794,7 +1794,7 @@ static inline void mpm__calm_fetch(const mpm_world *w, const mpm_run *r, const m
 }
 
 /* To the forces of a run's nodes: sum m N f of the points' f and the mass, or of f = S direction. */
-MPM__KERNEL void mpm__calm_map_run(mpm_world *w, const mpm_run *r, int k, int ky, const mpm__calmed *c, int direction)
+MPM_KERNEL void mpm__calm_map_run(mpm_world *w, const mpm_run *r, int k, int ky, const mpm__calmed *c, int direction)
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     mpm_real V[3][MPM_SUPPORT], F[3][MPM_SUPPORT] = {{0}}, M[MPM_SUPPORT] = {0}, N[MPM_SUPPORT], seen[3][MPM__LANES];
@@ -1960,7 +1960,7 @@ static inline void mpm__calm_pressure(mpm_world *w, const mpm_body_desc *b, int3
     w->ledger.calm += (double)(q->mass[i] * (1 - share / 2) * rest * volume);
 }
 
-MPM__KERNEL void mpm__calm_run(mpm_world *w, const mpm_run *r, int k, int ky, const mpm__calmed *c, mpm_real share)
+MPM_KERNEL void mpm__calm_run(mpm_world *w, const mpm_run *r, int k, int ky, const mpm__calmed *c, mpm_real share)
 {
     mpm_real V[3][MPM_SUPPORT], seen[3][MPM__LANES], rest[3];
     mpm__weights s;
@@ -2031,7 +2031,7 @@ MPM_API void mpm_calm(mpm_world *w)
 enum { MPM__P2G = 1, MPM__FORCES = 2, MPM__G2P = 4, MPM__MUSL = 8, MPM__STRESS = 16, MPM__MOVE = 32 };
 
 /* P_I += m_p v_p N_I of a piece of a run (A 3.24), and with mass m_I += m_p N_I (A 3.23). */
-MPM__KERNEL void mpm__momentum_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int mass,
+MPM_KERNEL void mpm__momentum_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int mass,
                                      mpm_real *M, mpm_real P[3][MPM_SUPPORT])
 {
     const mpm_points *q = &w->points;
@@ -2052,7 +2052,7 @@ MPM__KERNEL void mpm__momentum_piece(const mpm_world *w, const mpm__weights *s, 
 }
 
 /* f_I -= (m_p / rho_p) sigma_p . grad N_I (A 3.25); in rings f_Ir -= (m_p / rho_p) sigma_hoop N_I / r_p too. */
-MPM__KERNEL void mpm__forces_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int hoop,
+MPM_KERNEL void mpm__forces_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int hoop,
                                    mpm_real F[3][MPM_SUPPORT])
 {
     const mpm_points *q = &w->points;
@@ -2079,7 +2079,7 @@ MPM__KERNEL void mpm__forces_piece(const mpm_world *w, const mpm__weights *s, in
 }
 
 /* The sums of one run to its nodes: mass and momentum, forces, or both. */
-MPM__KERNEL void mpm__to_nodes_run(mpm_world *w, const mpm_run *r, int k, int ky, int hoop, int what)
+MPM_KERNEL void mpm__to_nodes_run(mpm_world *w, const mpm_run *r, int k, int ky, int hoop, int what)
 {
     mpm_real M[MPM_SUPPORT], P[3][MPM_SUPPORT], F[3][MPM_SUPPORT];
     const int32_t *slot = mpm__run_nodes(w, r);
@@ -2939,7 +2939,7 @@ MPM_API void mpm_contact_apply(mpm_world *w)
 /* ---- back to the points ---------------------------------------------------------------------- */
 
 /* x_p += f sum N_I V_I of a piece of a run, for a vector x of the points. */
-MPM__KERNEL void mpm__add_values(const mpm__weights *s, int k, int ky, mpm_real V[3][MPM_SUPPORT], mpm_real f,
+MPM_KERNEL void mpm__add_values(const mpm__weights *s, int k, int ky, mpm_real V[3][MPM_SUPPORT], mpm_real f,
                                  mpm_real *const x[3], int32_t at)
 {
     mpm_real sum[MPM__LANES];
@@ -2952,7 +2952,7 @@ MPM__KERNEL void mpm__add_values(const mpm__weights *s, int k, int ky, mpm_real 
 }
 
 /* v_p += dt sum N_I f_I / m_I of one run (A 3.32), v_I += m_p v_p N_I (A 3.33), or both. */
-MPM__KERNEL void mpm__velocities_run(mpm_world *w, const mpm_run *r, int k, int ky, int what)
+MPM_KERNEL void mpm__velocities_run(mpm_world *w, const mpm_run *r, int k, int ky, int what)
 {
     const mpm_real dt = w->dt;
     mpm_real A[3][MPM_SUPPORT], P[3][MPM_SUPPORT];
@@ -3069,7 +3069,7 @@ MPM_API void mpm_to_points(mpm_world *w)
 
 /* Strain and rotation increments of a piece of a run, d eps_ij = dt (dv_i/dx_j + dv_j/dx_i) / 2 with dv_i/dx_j =
    sum v_Ii dN_I/dx_j, and half the curl of v times dt (A 3.35); in rings d eps_hoop = dt v_r / r. */
-MPM__KERNEL void mpm__strain_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int hoop,
+MPM_KERNEL void mpm__strain_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int hoop,
                                    mpm_real V[3][MPM_SUPPORT], mpm_real (*e)[MPM_BLOCK],
                                    mpm_real (*spin)[MPM_BLOCK], int to)
 {
@@ -3149,7 +3149,7 @@ static inline int mpm__run_touches(const mpm_world *w, const mpm_run *r)
 
 /* Strain increments of all points of one body, a block at a time. With MOVE in what, points are moved too, but not
    those of runs that touch: the ledger of their cut velocities asks for level k. */
-MPM__KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, int32_t run, int32_t runs, int k, int ky, int hoop,
+MPM_KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, int32_t run, int32_t runs, int k, int ky, int hoop,
                                         int what)
 {
     mpm_real e[6][MPM_BLOCK], spin[3][MPM_BLOCK], V[3][MPM_SUPPORT], U[3][MPM_SUPPORT];
@@ -3256,7 +3256,7 @@ static inline mpm_status mpm__sweep_stress(mpm_world *w, int what)
 }
 
 /* x_p += dt sum N_I P_I / m_I of one run (A 3.32). */
-MPM__KERNEL void mpm__move_run(mpm_world *w, const mpm_run *r, int k, int ky)
+MPM_KERNEL void mpm__move_run(mpm_world *w, const mpm_run *r, int k, int ky)
 {
     mpm_real U[3][MPM_SUPPORT];
     mpm__weights s;

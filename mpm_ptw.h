@@ -161,14 +161,14 @@ enum { MPM__MANTISSA = 52, MPM__BIAS = 1023 };
 #define MPM__ROOT_HALF ((mpm__bits)0x3fe6a09eu << 32 | 0x667f3bcdu)
 #endif
 
-MPM__KERNEL mpm__bits mpm__bits_of(mpm_real x)
+MPM_KERNEL mpm__bits mpm__bits_of(mpm_real x)
 {
     mpm__bits b;
     memcpy(&b, &x, sizeof b);
     return b;
 }
 
-MPM__KERNEL mpm_real mpm__real_of(mpm__bits b)
+MPM_KERNEL mpm_real mpm__real_of(mpm__bits b)
 {
     mpm_real x;
     memcpy(&x, &b, sizeof x);
@@ -177,7 +177,7 @@ MPM__KERNEL mpm_real mpm__real_of(mpm__bits b)
 
 /* exp x = p + *scale: x = n ln 2 + r, *scale = 2^n, p = 2^n (exp r - 1) by Taylor's series, even and odd terms apart.
    x between EXP_LEAST and EXP_MOST. */
-MPM__KERNEL mpm_real mpm__exp_parts(mpm_real x, mpm_real *scale)
+MPM_KERNEL mpm_real mpm__exp_parts(mpm_real x, mpm_real *scale)
 {
     const mpm__bits turned = mpm__bits_of(x * MPM_R(1.44269504088896340736) + MPM__ROUNDER);
     const mpm_real n = mpm__real_of(turned) - MPM__ROUNDER;
@@ -195,14 +195,14 @@ MPM__KERNEL mpm_real mpm__exp_parts(mpm_real x, mpm_real *scale)
     return *scale * (even + r * odd);
 }
 
-MPM__KERNEL mpm_real mpm__exp_range(mpm_real x)
+MPM_KERNEL mpm_real mpm__exp_range(mpm_real x)
 {
     const mpm_real y = x > MPM__EXP_MOST ? MPM__EXP_MOST : x;
     return y < MPM__EXP_LEAST ? MPM__EXP_LEAST : y;
 }
 
 /* exp x within 2 eps. Infinite above 709 (float: 88), 0 below -708 (-87). */
-MPM__KERNEL mpm_real mpm_lane_exp(mpm_real x)
+MPM_KERNEL mpm_real mpm_lane_exp(mpm_real x)
 {
     mpm_real scale;
     const mpm_real p = mpm__exp_parts(mpm__exp_range(x), &scale);
@@ -210,7 +210,7 @@ MPM__KERNEL mpm_real mpm_lane_exp(mpm_real x)
 }
 
 /* exp x - 1 within 3 eps of itself. Infinite above 709 (88). */
-MPM__KERNEL mpm_real mpm_lane_expm1(mpm_real x)
+MPM_KERNEL mpm_real mpm_lane_expm1(mpm_real x)
 {
     mpm_real scale;
     const mpm_real p = mpm__exp_parts(mpm__exp_range(x), &scale);
@@ -220,7 +220,7 @@ MPM__KERNEL mpm_real mpm_lane_expm1(mpm_real x)
 /* ln x within 2 eps. What is less than the smallest normal number counts as that; no number for infinity. x = 2^n m,
    sqrt(1/2) <= m < sqrt 2; f = m - 1, s = f/(2 + f): ln m = 2 (s + s^3/3 + s^5/5 ...), written as f less what it is too
    much. */
-MPM__KERNEL mpm_real mpm_lane_log(mpm_real x)
+MPM_KERNEL mpm_real mpm_lane_log(mpm_real x)
 {
     const mpm__bits one = (mpm__bits)MPM__BIAS << MPM__MANTISSA;
     const mpm__bits b = mpm__bits_of(x < MPM__LEAST_NORMAL ? MPM__LEAST_NORMAL : x);
@@ -239,12 +239,12 @@ MPM__KERNEL mpm_real mpm_lane_log(mpm_real x)
 }
 
 /* x^y, x >= 0, within 2 (1 + |y ln x|) eps; x as in mpm_lane_log. */
-MPM__KERNEL mpm_real mpm_lane_pow(mpm_real x, mpm_real y) { return mpm_lane_exp(y * mpm_lane_log(x)); }
+MPM_KERNEL mpm_real mpm_lane_pow(mpm_real x, mpm_real y) { return mpm_lane_exp(y * mpm_lane_log(x)); }
 
 /* erf x and, in *bell, exp(-x^2), within 3 and 2 eps of 1. With t = (x - 3)/(x + 3), exp(x^2) erfc(x) (1 + 2 x) is a
    polynomial in t, fitted here in 50 digits at the zeros of a Chebyshev polynomial for 0 <= x <= 6, beyond which
    erf x is 1 (J. L. Schonfelder, Math. Comp. 32 (1978) 1232, for the form). */
-MPM__KERNEL mpm_real mpm_lane_erf(mpm_real x, mpm_real *bell)
+MPM_KERNEL mpm_real mpm_lane_erf(mpm_real x, mpm_real *bell)
 {
     const mpm_real size = mpm_fabs(x), a = size > 6 ? 6 : size, t = (a - 3) / (a + 3), q = t * t;
     const mpm_real even = MPM_R(1.2530080582697296) + q * (MPM_R(-0.047562294353451905) + q * (

@@ -1160,7 +1160,7 @@ MPM_KERNEL mpm_real mpm__point_size(const mpm_world *w, int32_t body)
 
 /* Weights of points [first, first + n) of run r. */
 MPM_KERNEL void mpm__weigh(const mpm_world *w, const mpm_run *r, int32_t first, int n, int k, int ky,
-                            mpm__weights *s)
+                           mpm__weights *s)
 {
     const mpm_real inv = 1 / w->desc.cell, l = mpm__point_size(w, r->body) / 2;
     mpm_real t[MPM__LANES];
@@ -1262,7 +1262,7 @@ MPM_KERNEL void mpm__sums(const mpm__weights *s, int k, int ky, const mpm_real *
 
 /* ... and the sums of V grad N: g[0], g[1], g[2]. */
 MPM_KERNEL void mpm__gradient_sums(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum,
-                                    mpm_real (*g)[MPM__LANES])
+                                   mpm_real (*g)[MPM__LANES])
 {
     int ix, iy, iz, p;
     for (p = 0; p < s->n; p++) {
@@ -1319,7 +1319,7 @@ MPM_KERNEL void mpm__values(const mpm__weights *s, int k, int ky, const mpm_real
 }
 
 MPM_KERNEL void mpm__values_gradient(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum,
-                                      mpm_real (*g)[MPM__LANES])
+                                     mpm_real (*g)[MPM__LANES])
 {
     int p;
     if (k != 2) mpm__wide_gradient_sums(s, k, ky, V, sum, g);
@@ -1399,7 +1399,7 @@ static inline void mpm__turn(const mpm_run *r, int k, int ky, mpm_real V[3][MPM_
 
 /* Adds V, summed over points of a run, to its nodes. */
 MPM_KERNEL void mpm__scatter(mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which,
-                              mpm_real V[3][MPM_SUPPORT])
+                             mpm_real V[3][MPM_SUPPORT])
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     int a, d;
@@ -1413,7 +1413,7 @@ MPM_KERNEL void mpm__scatter(mpm_world *w, const mpm_run *r, int k, int ky, mpm_
 /* Fetches a vector of a run's nodes, divided by the nodal mass if per_mass. Nodes lighter than the
    cutoff give zero. */
 MPM_KERNEL void mpm__gather(const mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which, int per_mass,
-                             mpm_real V[3][MPM_SUPPORT])
+                            mpm_real V[3][MPM_SUPPORT])
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     const mpm_real cutoff = w->desc.mass_cutoff * w->body[r->body].point_mass;
@@ -1433,7 +1433,7 @@ MPM_KERNEL void mpm__gather(const mpm_world *w, const mpm_run *r, int k, int ky,
 
 /* ... as mpm__value wants it. */
 MPM_KERNEL void mpm__gather_polynomial(const mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which,
-                                        int per_mass, mpm_real V[3][MPM_SUPPORT])
+                                       int per_mass, mpm_real V[3][MPM_SUPPORT])
 {
     mpm__gather(w, r, k, ky, which, per_mass, V);
     mpm__as_polynomial(k, ky, V);
@@ -2032,7 +2032,7 @@ enum { MPM__P2G = 1, MPM__FORCES = 2, MPM__G2P = 4, MPM__MUSL = 8, MPM__STRESS =
 
 /* P_I += m_p v_p N_I of a piece of a run (A 3.24), and with mass m_I += m_p N_I (A 3.23). */
 MPM_KERNEL void mpm__momentum_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int mass,
-                                     mpm_real *M, mpm_real P[3][MPM_SUPPORT])
+                                    mpm_real *M, mpm_real P[3][MPM_SUPPORT])
 {
     const mpm_points *q = &w->points;
     const int nodes = mpm__reach(w);
@@ -2053,7 +2053,7 @@ MPM_KERNEL void mpm__momentum_piece(const mpm_world *w, const mpm__weights *s, i
 
 /* f_I -= (m_p / rho_p) sigma_p . grad N_I (A 3.25); in rings f_Ir -= (m_p / rho_p) sigma_hoop N_I / r_p too. */
 MPM_KERNEL void mpm__forces_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int hoop,
-                                   mpm_real F[3][MPM_SUPPORT])
+                                  mpm_real F[3][MPM_SUPPORT])
 {
     const mpm_points *q = &w->points;
     const int nodes = mpm__reach(w);
@@ -2940,7 +2940,7 @@ MPM_API void mpm_contact_apply(mpm_world *w)
 
 /* x_p += f sum N_I V_I of a piece of a run, for a vector x of the points. */
 MPM_KERNEL void mpm__add_values(const mpm__weights *s, int k, int ky, mpm_real V[3][MPM_SUPPORT], mpm_real f,
-                                 mpm_real *const x[3], int32_t at)
+                                mpm_real *const x[3], int32_t at)
 {
     mpm_real sum[MPM__LANES];
     int p, d;
@@ -3070,8 +3070,8 @@ MPM_API void mpm_to_points(mpm_world *w)
 /* Strain and rotation increments of a piece of a run, d eps_ij = dt (dv_i/dx_j + dv_j/dx_i) / 2 with dv_i/dx_j =
    sum v_Ii dN_I/dx_j, and half the curl of v times dt (A 3.35); in rings d eps_hoop = dt v_r / r. */
 MPM_KERNEL void mpm__strain_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int hoop,
-                                   mpm_real V[3][MPM_SUPPORT], mpm_real (*e)[MPM_BLOCK],
-                                   mpm_real (*spin)[MPM_BLOCK], int to)
+                                  mpm_real V[3][MPM_SUPPORT], mpm_real (*e)[MPM_BLOCK],
+                                  mpm_real (*spin)[MPM_BLOCK], int to)
 {
     const mpm_real *radius = w->points.x[0] + at, dt = w->dt, half = MPM_R(0.5) * w->dt;
     mpm_real v[3][MPM__LANES], g[3][3][MPM__LANES];
@@ -3150,7 +3150,7 @@ static inline int mpm__run_touches(const mpm_world *w, const mpm_run *r)
 /* Strain increments of all points of one body, a block at a time. With MOVE in what, points are moved too, but not
    those of runs that touch: the ledger of their cut velocities asks for level k. */
 MPM_KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, int32_t run, int32_t runs, int k, int ky, int hoop,
-                                        int what)
+                                       int what)
 {
     mpm_real e[6][MPM_BLOCK], spin[3][MPM_BLOCK], V[3][MPM_SUPPORT], U[3][MPM_SUPPORT];
     int32_t first = w->body[body].first;

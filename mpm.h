@@ -2028,7 +2028,7 @@ MPM_API void mpm_calm(mpm_world *w)
 /* ---- to the nodes ------------------------------------------------------------------------- */
 
 /* What a sweep over the points does; two that follow each other share one sweep and its weights. */
-enum { MPM__P2G = 1, MPM__FORCES = 2, MPM__G2P = 4, MPM__MUSL = 8, MPM__STRESS = 16, MPM__MOVE = 32 };
+enum { MPM__P2G = 1, MPM__FORCES = 2, MPM__G2P = 4, MPM__MUSL = 8 };
 
 /* P_I += m_p v_p N_I of a piece of a run (A 3.24), and with mass m_I += m_p N_I (A 3.23). */
 MPM_KERNEL void mpm__momentum_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int mass,
@@ -3147,10 +3147,10 @@ static inline int mpm__run_touches(const mpm_world *w, const mpm_run *r)
     return 0;
 }
 
-/* Strain increments of all points of one body, a block at a time. With MOVE in what, points are moved too, but not
-   those of runs that touch: the ledger of their cut velocities asks for level k. */
+/* Strain increments of all points of one body, a block at a time. With `move` points are moved too, but not those of
+   runs that touch: the ledger of their cut velocities asks for level k. */
 MPM_KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, int32_t run, int32_t runs, int k, int ky, int hoop,
-                                       int what)
+                                       int move)
 {
     mpm_real e[6][MPM_BLOCK], spin[3][MPM_BLOCK], V[3][MPM_SUPPORT], U[3][MPM_SUPPORT];
     int32_t first = w->body[body].first;
@@ -3159,7 +3159,7 @@ MPM_KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, int32_t run, 
     mpm_status s;
     for (; run < runs; run++) {
         const mpm_run *r = &w->run[run];
-        const int moves = what & MPM__MOVE && !mpm__run_touches(w, r);
+        const int moves = move && !mpm__run_touches(w, r);
         int32_t at = r->first;
         mpm__gather_polynomial(w, r, k, ky, MPM__VELOCITY, 0, V);
         if (moves) mpm__gather_polynomial(w, r, k, ky, MPM__MOMENTUM, 1, U);
@@ -3240,13 +3240,13 @@ static inline void mpm__account_cuts(mpm_world *w)
     }
 }
 
-static inline mpm_status mpm__sweep_stress(mpm_world *w, int what)
+static inline mpm_status mpm__sweep_stress(mpm_world *w, int move)
 {
     int32_t b, from = 0, to = 0;
     mpm_status s;
     for (b = 0; b < w->bodies; b++, from = to) {
         while (to < w->runs && w->run[to].body == b) to++;
-#define MPM__CALL(k, ky, hoop) s = mpm__stress_body(w, b, from, to, k, ky, hoop, what)
+#define MPM__CALL(k, ky, hoop) s = mpm__stress_body(w, b, from, to, k, ky, hoop, move)
         MPM__SPECIALISED(w, 1, MPM__CALL);
 #undef MPM__CALL
         if (s < 0) return s;
@@ -3287,13 +3287,13 @@ static inline void mpm__sweep_move(mpm_world *w, int all)
     w->steps++;
 }
 
-MPM_API mpm_status mpm_stress(mpm_world *w) { return mpm__sweep_stress(w, MPM__STRESS); }
+MPM_API mpm_status mpm_stress(mpm_world *w) { return mpm__sweep_stress(w, 0); }
 
 MPM_API void mpm_move(mpm_world *w) { mpm__sweep_move(w, 1); }
 
 MPM_API mpm_status mpm_stress_and_move(mpm_world *w)
 {
-    const mpm_status s = mpm__sweep_stress(w, MPM__STRESS | MPM__MOVE);
+    const mpm_status s = mpm__sweep_stress(w, 1);
     if (s >= 0) mpm__sweep_move(w, 0);
     return s;
 }

@@ -902,12 +902,6 @@ static inline void mpm__ptw_bound_ptw(const mpm_material *m, const mpm__ptw_shar
     for (i = 0; i < MPM__PTW_KNOTS; i++) b->shear[i] = 2 * g.stress[i];
 }
 
-/* Whether a rate lies beyond r = 1. */
-static inline int mpm__ptw_overdriven(const mpm__ptw_group *g, int i, mpm_real rate)
-{
-    return mpm_lane_log(rate * g->rate_scale[i]) + g->log_eta[i] / 6 > 0;
-}
-
 /* ---- the other strengths ------------------------------------------------------------------- */
 
 /* sigma = infinity. */

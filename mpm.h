@@ -47,6 +47,8 @@
      MPM_FLOAT            GLOBAL  mpm_real is float. Public symbols then end in _f32, so that
                                   units compiled differently fail to link instead of misbehaving.
      MPM_STATIC           IMPL    every function is static inline; implies MPM_IMPLEMENTATION.
+     MPM_COMPILED         GLOBAL  mpm.c is compiled and linked in: MPM_IMPLEMENTATION is ignored, so that a
+                                  program of one file is compiled faster, without a change.
      MPM_MALLOC(n), MPM_FREE(p)  IMPL  used only where the caller passes NULL for memory.
      MPM_BLOCK            IMPL    points per constitutive block (default 64).
      MPM_NO_INLINE        IMPL    the kernels are not inlined by force: slower, but quick to compile.
@@ -110,6 +112,9 @@ typedef double mpm_real;
 #define MPM_DIGITS 17
 #endif
 
+#ifdef MPM_COMPILED
+#undef MPM_IMPLEMENTATION
+#endif
 #ifdef MPM_STATIC
 #ifndef MPM_IMPLEMENTATION
 #define MPM_IMPLEMENTATION

@@ -5,6 +5,7 @@
 #include "mpm_spray.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "check.h"
 

@@ -137,10 +137,9 @@ static void print_table(const impact *s, const impact_case *c, const impact_resu
 {
     const mpm_world *w = &s->world;
     const double start = s->start.kinetic;
-    const int stays = fabs(r->relative) <= 5 && (w->held > 0 || r->meeting.bonded > 0);
     char name[64];
     printf("\n  %s, %g um at %g m/s after %.4g ns: %s\n\n", metals(s, name, sizeof name), c->diameter, c->velocity,
-           (double)w->time * 1e3, stays ? "stays" : "rebounds");
+           (double)w->time * 1e3, impact_stays(s, r) ? "stays" : "rebounds");
     printf("  rebound velocity, mean          %10.3f m/s\n", r->rebound.mean);
     printf("  rebound velocity, |v| <= 60 m/s %10.3f m/s  (%.4f of the impact velocity)\n", r->rebound.filtered,
            r->restitution);

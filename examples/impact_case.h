@@ -535,6 +535,12 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
     return r;
 }
 
+/* The verdict: the particle moves with the substrate, and something holds it. */
+static inline int impact_stays(const impact *s, const impact_result *r)
+{
+    return fabs(r->relative) <= 5 && (s->world.held > 0 || r->meeting.bonded > 0);
+}
+
 /* Runs a case to its end and measures. Returns 1, or 0 with a message. */
 static inline int impact_run(const impact_case *c, impact_result *r, char *message, size_t n)
 {

@@ -168,6 +168,27 @@ figures: ## the figures of docs/method.md
 	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) docs/figures.c -o build/figures $(LDFLAGS) -lm
 	build/figures
 
+# The live page: the headers as WebAssembly, by a clang that can (Debian: clang lld wasi-libc libclang-rt-14-dev-wasm32).
+WASM_CC  ?= clang
+LIVE_PAGE = index.html live.css engine.js worker.js choices.js curves.js impact.js lesson.js live.js
+build/web/live.wasm: web/live/live.c web/live/build.sh $(HEADERS) $(wildcard examples/*.h)
+	@sh web/live/build.sh "$(WASM_CC)"
+
+web: build/web/live.wasm ## the live page into build/web: open build/web/index.html; WASM_CC=clang
+	@cp $(addprefix web/live/,$(LIVE_PAGE)) build/web
+	@mkdir -p build/web/data
+	@cp docs/data/method_*.png build/web/data
+	@awk -f web/live/page.awk docs/method.md >build/web/method.html.part
+	@mv build/web/method.html.part build/web/method.html
+	@echo "build/web/index.html"
+
+live-test: build/impact build/tests/live_digits ## the live page's numbers beside the desktop's, and the page in a browser, where they are there
+	@sh tests/web/live.sh "$(MAKE)" "$(WASM_CC)"
+
+build/tests/live_digits: tests/web/live_digits.c
+	@mkdir -p build/tests
+	$(CC) $(STRICT) $(TESTFLAGS) $(INCLUDE) $(NOTE) $< -o $@ $(LDFLAGS) -lm
+
 footprint: ## what each header costs - code, stack, memory, compile time: the table in README.md (5 minutes)
 	sh bench/footprint.sh "$(CC)"
 
@@ -197,4 +218,4 @@ dist: build/mpm_all.h ## a release: build/mpm-VERSION.tar.gz, and build/mpm_all.
 clean: ## removes build/
 	rm -rf build
 
-.PHONY: all help run predict test fuzz hard coverage verify impacts reproduction spray-study bench bench-against footprint figures install uninstall dist clean
+.PHONY: all help run web live-test predict test fuzz hard coverage verify impacts reproduction spray-study bench bench-against footprint figures install uninstall dist clean

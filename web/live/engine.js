@@ -123,31 +123,32 @@ async function liveEngine(source) {
     digits: () => doubles(wasm.live_digits(), 9),
     end: () => wasm.live_end(),
 
-    /* The state after 100 steps of the worked point, and after each phase of the next: eleven looks. */
+    /* One step of the worked point: the state after 100 steps, then after each phase of the next, eleven looks. Of all
+       points those of its layer, y = 5 to 5.5; of the nodes those before and behind it, y = 5 and 6, by their slot. */
     lesson() {
       const looks = [];
-      const look = (phase) => {
-        const at = (rows, i) => rows[i];
-        const points = table(wasm.live_lesson_points(), wasm.live_lesson_point_count(), 17).map((p) => ({
-          id: p[0], body: p[1], x: p.slice(2, 5), v: p.slice(5, 8), mass: p[8], density: p[9],
+      const points = () => table(wasm.live_lesson_points(), wasm.live_lesson_point_count(), 17)
+        .filter((p) => p[3] > 5 && p[3] < 5.5)
+        .map((p) => ({ id: p[0], body: p[1], x: p.slice(2, 5), v: p.slice(5, 8), mass: p[8], density: p[9],
           stress: p.slice(10, 16) }));
-        const nodes = phase < 0 ? [] : table(wasm.live_lesson_nodes(), wasm.live_lesson_node_count(), 19).map((n) => ({
-          x: n.slice(0, 3), body: n[3], mass: n[4], momentum: n.slice(5, 8), force: n.slice(8, 11),
-          velocity: n.slice(11, 14), gradient: n.slice(14, 17), touch: n[17] }));
-        const pairs = phase < 4 ? [] : table(wasm.live_lesson_pairs(), wasm.live_lesson_pair_count(), 8).map((p) => ({
-          a: p[0], b: p[1], normal: p.slice(2, 5), impulse: p.slice(5, 8) }));
-        const support = phase < 0 || phase > 8 ? at(looks, looks.length - 1)?.support ?? []
-          : table(wasm.live_lesson_support(), 8, 5).map((s) => ({ slot: s[0], N: s[1], G: s.slice(2, 5) }));
-        looks.push({ phase, points, nodes, pairs, support, chosen: wasm.live_lesson_chosen(),
-          strain: doubles(wasm.live_lesson_strain(), 9) });
-      };
+      const nodes = () => new Map(table(wasm.live_lesson_nodes(), wasm.live_lesson_node_count(), 19)
+        .filter((n) => n[1] === 5 || n[1] === 6)
+        .map((n) => [n[18], { x: n.slice(0, 3), body: n[3], mass: n[4], momentum: n.slice(5, 8),
+          force: n.slice(8, 11), velocity: n.slice(11, 14), gradient: n.slice(14, 17) }]));
+      const pairs = () => table(wasm.live_lesson_pairs(), wasm.live_lesson_pair_count(), 8)
+        .map((p) => ({ a: p[0], b: p[1], normal: p.slice(2, 5), impulse: p.slice(5, 8) }));
+      const support = () => table(wasm.live_lesson_support(), 8, 5)
+        .map((s) => ({ slot: s[0], N: s[1], G: s.slice(2, 5) }));
+      const look = (phase) => looks.push({ points: points(), nodes: phase < 0 ? new Map() : nodes(),
+        pairs: phase < 4 ? [] : pairs(), support: phase === 0 ? support() : looks[1]?.support ?? [],
+        strain: doubles(wasm.live_lesson_strain(), 9) });
       need(wasm.live_lesson());
       look(-1);
       for (let phase = 0; phase < 10; phase++) {
         need(wasm.live_lesson_phase(phase));
         look(phase);
       }
-      return looks;
+      return { looks, chosen: wasm.live_lesson_chosen() };
     },
   };
 }

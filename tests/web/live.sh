@@ -1,7 +1,7 @@
 #!/bin/sh
-# The live page: digits beside the desktop's by node, and the page in a headless Chromium. What is not there is skipped,
-# with the reason. sh tests/web/live.sh MAKE WASM_COMPILER, from the top folder, build/impact and build/tests/live_digits
-# made.
+# The live page: digits beside the desktop's by node, and the page in a headless Chromium. What is not there is
+# skipped, with the reason. sh tests/web/live.sh MAKE WASM_COMPILER, from the top folder, when build/impact and
+# build/tests/live_digits are made.
 set -u
 make=$1
 cc=$2

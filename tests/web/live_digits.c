@@ -1,5 +1,6 @@
-/* live_digits - an impact of the live page as the desktop computes it: the words of a command line of build/impact, then
-   the numbers of live_digits in web/live/live.c, one a line. tests/web/live_digits.mjs compares the two.
+/* live_digits - an impact of the live page as the desktop computes it: takes the words of a command line of
+   build/impact, prints the numbers of live_digits in web/live/live.c, one a line. tests/web/live_digits.mjs compares
+   the two.
    SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "impact_options.h"

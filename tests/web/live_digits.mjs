@@ -142,7 +142,8 @@ for (const row of [[xx, xy - wz, xz + wy], [xy + wz, yy, yz - wx], [xz - wy, yz 
   text.push(`    ${row.map((x) => f(x, 4, 8)).join(" ")}`);
 sayPoint("the point after 101 steps", 9);
 
-const page = fs.readFileSync("docs/method.md", "utf8").split("```text\n")[1]?.split("```")[0].trimEnd().split("\n") ?? [];
+const block = fs.readFileSync("docs/method.md", "utf8").split("```text\n")[1]?.split("```")[0] ?? "";
+const page = block.trimEnd().split("\n");
 check("docs/method.md has the worked point", page.length === text.length, page.length);
 text.forEach((line, i) => check(`the worked point, line ${i + 1}`, line === page[i], `${line}, not ${page[i]}`));
 checkEnd();

@@ -1,6 +1,6 @@
 /* live_page.mjs - the live page in a headless Chromium: it loads, runs, stops, steps, gives a verdict, shows the worked
-   point; by keyboard, enlarged, in the dark, on a narrow screen, from a server and from a disk. Pictures to look at go to
-   build/web-pictures. node tests/web/live_page.mjs CHROMIUM, from the top folder. SPDX-License-Identifier: MIT */
+   point; by keyboard, enlarged, in the dark, on a narrow screen, from a server and from a disk. Pictures to look at go
+   to build/web-pictures. node tests/web/live_page.mjs CHROMIUM, from the top folder. SPDX-License-Identifier: MIT */
 import fs from "node:fs";
 import http from "node:http";
 import path from "node:path";
@@ -37,17 +37,21 @@ const pixels = () => page.eval(`{ const c = document.getElementById("stage");
 
 /* ---- the impact ---- */
 
+const at9917 = (k) => `document.getElementById("state").textContent.includes("step ${k} of 9917")`;
+
 await page.size(1280, 900);
 check("the page is ready", await page.until(READY, 30));
+check("curves have scales before they have a course", await page.eval(
+  `[...document.querySelectorAll("#panels svg")].every((one) => new Set([...one.querySelectorAll("text")].map(
+    (word) => word.textContent)).size === one.querySelectorAll("text").length - 1)`)); // 0 and 0 ns differ
 check("it shows the command", (await text("command")) === "build/impact --geometry axisymmetric");
 await page.picture(PICTURES + "impact-ready.png");
 
 await click("step-one");
-check("one step is one step", await page.until("document.getElementById('state').textContent.includes('step 1 of 9917')", 5));
+check("one step is one step", await page.until(at9917(1), 5));
 await page.eval("document.getElementById('stage').focus()");
 await page.key("ArrowRight");
-check("the right arrow takes one more", await page.until(
-  "document.getElementById('state').textContent.includes('step 2 of 9917')", 5));
+check("the right arrow takes one more", await page.until(at9917(2), 5));
 await page.key(" ");
 check("space runs", await page.until("document.getElementById('progress').value > 0.05", 30));
 check("... the button says stop", (await text("run")) === "Stop");
@@ -68,7 +72,7 @@ await page.picture(PICTURES + "impact-stopped.png");
 const before = await pixels();
 await page.eval(`{ const field = document.getElementById("field"); field.value = "temperature"; field.onchange(); }`);
 await wait(400);
-check("another field, another bar", (await text("bar")).startsWith("temperature, K"));
+check("another field, another bar", (await text("bar")).startsWith("temperatureK"));
 check("... and picture", before !== await pixels());
 const bare = await pixels();
 await click("grid-lines");
@@ -91,7 +95,7 @@ check("three curves over the whole run", await page.eval(`[...document.querySele
   [...document.querySelectorAll("#panels path")].every((one) => one.getAttribute("d").split("L").length > 300)`));
 await page.picture(PICTURES + "impact-verdict.png");
 await click("again");
-check("from the start", await page.until("document.getElementById('state').textContent.includes('step 0 of 9917')", 10));
+check("from the start", await page.until(at9917(0), 10));
 
 await choose("bond", "none");
 await page.until(READY, 10);
@@ -120,7 +124,8 @@ const worked = fs.readFileSync("docs/method.md", "utf8").split("```text\n")[1].s
 const EXPECTED = [["5.7657 5.2550 4.6508", "0.19918"], ["0.23568", "-13.8794"], ["-1536.5746"], ["-26.1720"],
   ["0.01750 0.00000 -0.99985"], ["0.23568, P_a = 14.0102 0.0000 -26.1720", "1.28102, P_b = -11.1285 0.0000 -66.5026",
     "12.0070", "13.8001 0.0000 -14.1668"], ["-52.712", "-52.922"], ["-93.688", "-145.560"],
-  ["0.1636   0.0270  -0.3723", "0.0652   0.0561  -0.6499", "-6496.4"], ["5.7658 5.2551 4.6499", "63.225 28.878 -52.922"]];
+  ["0.1636   0.0270  -0.3723", "0.0652   0.0561  -0.6499", "-6496.4"],
+  ["5.7658 5.2551 4.6499", "63.225 28.878 -52.922"]];
 await page.go(url + "#step");
 await page.until("document.getElementById('arithmetic').textContent.length > 10", 20);
 for (let k = 0; k < EXPECTED.length; k++) {
@@ -136,8 +141,9 @@ for (let k = 0; k < EXPECTED.length; k++) {
 }
 const cells = (await page.eval("[...document.querySelectorAll('#nodes tbody td')].map((one) => one.textContent)"));
 const rows = worked.split("after contact\n")[1].split("contact at")[0].trim().split(/\s+/);
-check("the table is that of docs/method.md", cells.length === 80 && rows.length === 96 && [...Array(8).keys()].every((k) =>
-  rows.slice(12 * k + 3, 12 * k + 12).every((number, c) => number === cells[10 * k + c])), cells.slice(0, 10).join(" "));
+const rowIsSame = (k) => rows.slice(12 * k + 3, 12 * k + 12).every((number, c) => number === cells[10 * k + c]);
+check("the table is that of docs/method.md", cells.length === 80 && rows.length === 96 &&
+  [...Array(8).keys()].every(rowIsSame), cells.slice(0, 10).join(" "));
 await page.key("ArrowLeft");
 check("the left arrow goes back", (await text("step-title")).startsWith("9 of 10"));
 check("... and the address knows", (await page.eval("location.hash")) === "#step-9");
@@ -165,8 +171,9 @@ await page.size(1280, 900);
 /* Words on their ground: 4.5 to 1 at least (WCAG 2.2, AA). */
 const CONTRAST = `(() => {
   const numbers = (color) => color.match(/[\\d.]+/g).map(Number);
-  const light = (color) => numbers(color).slice(0, 3).map((x) => x / 255).map((x) =>
-    x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4).reduce((sum, x, i) => sum + x * [0.2126, 0.7152, 0.0722][i], 0);
+  const linear = (x) => x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4;
+  const light = (color) => numbers(color).slice(0, 3).map((x) => linear(x / 255))
+    .reduce((sum, x, i) => sum + x * [0.2126, 0.7152, 0.0722][i], 0);
   const ground = (one) => {
     const own = getComputedStyle(one).backgroundColor;
     return (numbers(own)[3] ?? 1) > 0.99 || !one.parentElement ? own : ground(one.parentElement);
@@ -184,23 +191,25 @@ for (const dark of [false, true])
     await at(place);
     await wait(200);
     const [ratio, where] = await page.eval(CONTRAST);
-    check(`${place}${dark ? " in the dark" : ""}: words stand out, ${ratio.toFixed(1)} to 1 at least`, ratio >= 4.5, where);
+    const name = `${place}${dark ? " in the dark" : ""}: words stand out, ${ratio.toFixed(1)} to 1 at least`;
+    check(name, ratio >= 4.5, where);
   }
 await page.dark(false);
 await at("index.html#impact");
-const nameless = await page.eval(`[...document.querySelectorAll("input, select, button, canvas, progress")].filter((one) =>
-  !(one.labels?.length || one.getAttribute("aria-label") || one.textContent.trim())).map((one) => one.outerHTML)`);
+const CONTROLS = "input, select, button, canvas, progress";
+const nameless = await page.eval(`[...document.querySelectorAll("${CONTROLS}")].filter((one) => !(
+  one.labels?.length || one.getAttribute("aria-label") || one.textContent.trim())).map((one) => one.outerHTML)`);
 check("all controls have names", nameless.length === 0, nameless.join(" "));
 const reached = new Set();
 for (let k = 0; k < 24; k++) {
   await page.key("Tab");
-  reached.add(await page.eval("document.activeElement.id || document.activeElement.name || document.activeElement.tagName"));
+  reached.add(await page.eval("(({ id, name, tagName }) => id || name || tagName)(document.activeElement)"));
 }
 const wanted = ["to-step", "material", "substrate", "model", "diameter", "velocity", "contact", "bond", "grid", "run",
   "step-one", "again", "field", "grid-lines", "stage"];
 check("all controls are reached by the Tab key", wanted.every((name) => reached.has(name)), [...reached].join(" "));
 check("no errors in all of this", page.errors.length === 0, page.errors.join("; "));
-check("nothing but its own files was asked for", asked.every((name) => fs.existsSync(path.join(WEB, name.split("?")[0]))),
+check("nothing but its own files was asked for", asked.every((name) => fs.existsSync(path.join(WEB, name))),
   asked.join(" "));
 
 /* ---- from a disk ---- */

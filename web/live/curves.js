@@ -51,7 +51,8 @@ function livePanel(title, unit, series) {
   function draw(samples, end) {
     const rows = samples.map((sample) => series.map((one) => sample[one.key] * (one.scale ?? 1)));
     const all = rows.flat();
-    let low = Math.min(0, ...all), high = Math.max(...all, low + 1e-9);
+    let low = Math.min(0, ...all), high = Math.max(0, ...all);
+    if (low === high) high = 1;
     const pad = 0.04 * (high - low);
     high += pad;
     if (low < 0) low -= pad;

@@ -2,21 +2,21 @@
    SPDX-License-Identifier: MIT */
 "use strict";
 
-/* What points are coloured by: their place in a frame, the colour map, its range, and the title of the bar. */
+/* What points are coloured by: their place in a frame, the colour map, its range, and the words of the bar. */
 const LIVE_COLOURS = {
-  strain: { at: 3, map: 0, range: () => [0, 4], what: "plastic strain" },
-  temperature: { at: 4, map: 1, range: (s) => [s.cold, s.hot], what: "temperature, K" },
-  pressure: { at: 5, map: 2, range: (s) => [-s.pressure, s.pressure], what: "pressure, GPa" },
-  velocity: { at: 6, map: 2, range: (s) => [-s.speed, s.speed], what: "velocity along z, m/s" },
-  bond: { at: 7, map: 0, range: () => [0, 1], what: "bond D", nodes: true },
+  strain: { at: 3, map: 0, range: () => [0, 4], what: "plastic strain", unit: "" },
+  temperature: { at: 4, map: 1, range: (s) => [s.cold, s.hot], what: "temperature", unit: "K" },
+  pressure: { at: 5, map: 2, range: (s) => [-s.pressure, s.pressure], what: "pressure", unit: "GPa" },
+  velocity: { at: 6, map: 2, range: (s) => [-s.speed, s.speed], what: "velocity", unit: "along z, m/s" },
+  bond: { at: 7, map: 0, range: () => [0, 1], what: "bond D", unit: "" },
 };
 
 /* The table's words, as build/impact says them. */
 const LIVE_SAID = {
-  nodes: "PBCP: of the surface that touched the other body, the part whose bond variable D is 1 or more. ABP: D of that " +
-    "surface on the mean. Held: pairs of nodes that the bond kept from parting in the last step.",
-  surface: "Bonded: of the area that touched, the part with adhesion that is not spent. Held: markers that adhesion drew " +
-    "to the other surface in the last step.",
+  nodes: "PBCP: of the surface that touched the other body, the part whose bond variable D is 1 or more. ABP: D " +
+    "of that surface on the mean. Held: pairs of nodes that the bond kept from parting in the last step.",
+  surface: "Bonded: of the area that touched, the part with adhesion that is not spent. Held: markers that " +
+    "adhesion drew to the other surface in the last step.",
 };
 
 function liveImpact(worker) {
@@ -139,7 +139,8 @@ function liveImpact(worker) {
   const colour = () => LIVE_COLOURS[find("field").value];
 
   function paintBar() {
-    const { map, range, what } = colour(), [low, high] = range(scale), flat = matchMedia("(max-width: 40rem)").matches;
+    const { map, range, what, unit } = colour(), [low, high] = range(scale);
+    const flat = matchMedia("(max-width: 40rem)").matches;
     const stops = colors[map].filter((_, i) => i % 15 === 0).map((c) => `rgb(${c})`);
     const strip = html("span", { class: "colours" });
     strip.style.background = `linear-gradient(to ${flat ? "right" : "top"}, ${stops.join(", ")})`;
@@ -149,12 +150,14 @@ function liveImpact(worker) {
       else mark.style.bottom = place;
       return mark;
     });
-    find("bar").replaceChildren(html("div", { class: "what" }, what), html("div", { class: "scale" }, strip, ...marks));
+    find("bar").replaceChildren(html("div", { class: "what" }, what, html("small", {}, unit)),
+      html("div", { class: "scale" }, strip, ...marks));
   }
 
   /* The canvas at the screen's resolution, and how it maps: x and z in um to pixels. */
   function place() {
-    const ratio = devicePixelRatio || 1, wide = canvas.clientWidth, tall = wide * (scale.top - scale.bottom) / 2 / scale.edge;
+    const ratio = devicePixelRatio || 1, wide = canvas.clientWidth;
+    const tall = wide * (scale.top - scale.bottom) / 2 / scale.edge;
     canvas.style.height = tall + "px";
     if (canvas.width !== Math.round(wide * ratio) || canvas.height !== Math.round(tall * ratio)) {
       canvas.width = Math.round(wide * ratio);
@@ -256,7 +259,7 @@ function liveImpact(worker) {
   }
 
   find("field").append(...Object.entries(LIVE_COLOURS).map(([value, { what }]) =>
-    html("option", { value }, what.replace(/,.*| along z.*/, ""))));
+    html("option", { value }, what)));
   find("field").onchange = () => {
     if (!scale) return;
     paintBar();
@@ -274,8 +277,8 @@ function liveImpact(worker) {
     const last = samples[samples.length - 1] ?? { time: 0, end: 1 };
     const points = samples[0]?.points ?? 0;
     find("progress").value = 1 - left / total;
-    find("state").textContent = `${last.time.toFixed(1)} of ${last.end.toFixed(1)} ns · step ${total - left} of ${total}` +
-      ` · ${points} points · ${(computed / 1000).toFixed(1)} s`;
+    find("state").textContent = `${last.time.toFixed(1)} of ${last.end.toFixed(1)} ns · ` +
+      `step ${total - left} of ${total} · ${points} points · ${(computed / 1000).toFixed(1)} s`;
   }
 
   // ---- what the worker says

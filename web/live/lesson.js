@@ -16,25 +16,25 @@ function subscripts(text) {
 
 /* What the arithmetic speaks of: the worked point and its nodes in the looks of all phases. */
 function liveWorked({ looks, chosen }) {
-  const DT = 8e-6, after = (phase) => looks[phase + 1];
+  const after = (phase) => looks[phase + 1];
   const point = (phase) => after(phase).points.find((p) => p.id === chosen);
   const support = after(0).support;
   const node = (phase, k) => after(phase).nodes.get(support[k].slot);
   const pair = after(4).pairs.find((p) => p.a === support[1].slot);
   const other = (phase) => after(phase).nodes.get(pair.b);
   const name = (k) => node(0, k).x.map((x) => Math.round(x)).join(" ");
-  return { DT, PG: 1e3, after, point, node, support, pair, other, name, chosen }; // 1 ng is 1e3 pg
+  return { PG: 1e3, after, point, node, support, pair, other, name, chosen }; // 1 ng is 1e3 pg
 }
 
 /* The phases: name, section of docs/method.md, words, formula, arithmetic in lines, caption of the picture. */
 const LIVE_PHASES = [
   {
     name: "Nodes", call: "mpm_locate", section: "1-a-point-and-its-nodes", title: "A point and its nodes",
-    words: "The grid is empty. Every point finds the eight corners of the cell it is in. Its share in each of them, N, " +
-      "is a product of three hats, one per direction; together they make 1.",
+    words: "The grid is empty. Every point finds the eight corners of the cell it is in. Its share in each of " +
+      "them, N, is a product of three hats, one per direction; together they make 1.",
     formula: "N = (1 − |u|) (1 − |v|) (1 − |w|)",
-    caption: "Discs as large as N. The dashed box is the cell: its far corners lie half a micrometre and more behind the " +
-      "section.",
+    caption: "Discs as large as N. The dashed box is the cell: its far corners lie half a micrometre and more " +
+      "behind the section.",
     lines(w) {
       const p = w.point(0), at = w.node(0, 1).x, u = p.x.map((x, i) => Math.abs(x - at[i]));
       return [`x_p = ${p.x.map((x) => fixed(x, 4)).join(" ")} um`, "",
@@ -45,9 +45,10 @@ const LIVE_PHASES = [
     },
   },
   {
-    name: "To nodes", call: "mpm_p2g", section: "2-mass-and-momentum-to-the-nodes", title: "Mass and momentum to the nodes",
-    words: "Points lend their mass and momentum to their nodes. Each body has nodes of its own, blue for the ball, orange " +
-      "for the block: so bodies can slide on each other and part again.",
+    name: "To nodes", call: "mpm_p2g", section: "2-mass-and-momentum-to-the-nodes",
+    title: "Mass and momentum to the nodes",
+    words: "Points lend their mass and momentum to their nodes. Each body has nodes of its own, blue for the " +
+      "ball, orange for the block: so bodies can slide on each other and part again.",
     formula: "m_I = Σ m_p N,   P_I = Σ m_p v_p N",
     caption: "Discs as large as a node's mass, arrows its momentum.",
     lines(w) {
@@ -63,8 +64,8 @@ const LIVE_PHASES = [
   },
   {
     name: "Forces", call: "mpm_forces", section: "3-forces", title: "Forces",
-    words: "The stress of a point pushes on its nodes, along the slope of N. m_p / ρ_p is the volume that the point stands " +
-      "for. The forces on a free body add up to nothing.",
+    words: "The stress of a point pushes on its nodes, along the slope of N. m_p / ρ_p is the volume that the " +
+      "point stands for. The forces on a free body add up to nothing.",
     formula: "f_I = − Σ m_p / ρ_p  σ_p grad N",
     caption: "Arrows: the force on each node of ball and block.",
     lines(w) {
@@ -81,8 +82,8 @@ const LIVE_PHASES = [
   },
   {
     name: "Momentum", call: "mpm_grid_update", section: "4-the-nodes-move", title: "The nodes move",
-    words: "Each node gets the momentum that its force gives in the time step. The lowest layer of nodes, the floor, is " +
-      "held.",
+    words: "Each node gets the momentum that its force gives in the time step. The lowest layer of nodes, the " +
+      "floor, is held.",
     formula: "P_I ← P_I + f_I dt",
     caption: "Pale: momentum before; full: after the forces.",
     lines(w) {
@@ -95,8 +96,8 @@ const LIVE_PHASES = [
   },
   {
     name: "Meeting", call: "mpm_contact_find", section: "5-where-bodies-meet", title: "Where bodies meet",
-    words: "A node that carries mass of both is a contact node. Its normal comes from the block's slope of mass, g = Σ m " +
-      "grad N, which points out of the block where its points lie on one side.",
+    words: "A node that carries mass of both is a contact node. Its normal comes from the block's slope of mass, " +
+      "g = Σ m grad N, which points out of the block where its points lie on one side.",
     formula: "n = − g_b / |g_b|",
     caption: "Rings: nodes of both bodies; arrows: the normal, out of the ball.",
     lines(w) {
@@ -109,8 +110,8 @@ const LIVE_PHASES = [
   },
   {
     name: "Contact", call: "mpm_contact_apply", section: "6-contact", title: "Contact",
-    words: "Where the two approach, they get one velocity along the normal: what the ball loses, the block gains. Without " +
-      "friction nothing happens along the surface.",
+    words: "Where the two approach, they get one velocity along the normal: what the ball loses, the block gains. " +
+      "Without friction nothing happens along the surface.",
     formula: "j = (m_b P_a − m_a P_b) · n / (m_a + m_b)",
     caption: "Arrows: the momentum that contact takes from one body and gives to the other.",
     lines(w) {
@@ -126,9 +127,10 @@ const LIVE_PHASES = [
     },
   },
   {
-    name: "Back", call: "mpm_g2p", section: "7-back-to-the-points-and-to-the-nodes-again", title: "Back to the points",
-    words: "The point takes the increment of the grid's velocity, not the velocity itself: that would smear it over the " +
-      "cell in every step.",
+    name: "Back", call: "mpm_g2p", section: "7-back-to-the-points-and-to-the-nodes-again",
+    title: "Back to the points",
+    words: "The point takes the increment of the grid's velocity, not the velocity itself: that would smear it " +
+      "over the cell in every step.",
     formula: "v_p ← v_p + dt Σ f_I N / m_I",
     caption: "Arrows: by how much each point's velocity changes.",
     lines(w) {
@@ -146,9 +148,10 @@ const LIVE_PHASES = [
     },
   },
   {
-    name: "Again", call: "mpm_musl", section: "7-back-to-the-points-and-to-the-nodes-again", title: "And to the nodes again",
-    words: "The new velocities of the points go to the nodes once more: a mean of theirs, and bounded, also at a node that " +
-      "a point only just reaches. P / m would not be.",
+    name: "Again", call: "mpm_musl", section: "7-back-to-the-points-and-to-the-nodes-again",
+    title: "And to the nodes again",
+    words: "The new velocities of the points go to the nodes once more: a mean of theirs, and bounded, also at a " +
+      "node that a point only just reaches. P / m would not be.",
     formula: "v_I = Σ m_p v_p N / m_I",
     caption: "Arrows: the nodes' velocities, for the strain alone.",
     lines(w) {
@@ -158,8 +161,8 @@ const LIVE_PHASES = [
   },
   {
     name: "Stress", call: "mpm_stress", section: "8-strain-and-stress", title: "Strain and stress",
-    words: "The slope of the nodes' velocities strains and turns the point; its density follows. Then its material has " +
-      "the word: here Hooke's law, the old stress turned along.",
+    words: "The slope of the nodes' velocities strains and turns the point; its density follows. Then its " +
+      "material has the word: here Hooke's law, the old stress turned along.",
     formula: "L = dt Σ v_I grad N,   ρ ← ρ / (1 + tr L)",
     caption: "Colours: the stress along z, red pressed, blue drawn.",
     lines(w) {
@@ -176,8 +179,8 @@ const LIVE_PHASES = [
   },
   {
     name: "Move", call: "mpm_move", section: "9-the-points-move", title: "The points move",
-    words: "The points move with the grid's velocity, which is continuous: points of one body never pass through each " +
-      "other. Then the grid is forgotten, and the next step begins.",
+    words: "The points move with the grid's velocity, which is continuous: points of one body never pass through " +
+      "each other. Then the grid is forgotten, and the next step begins.",
     formula: "x_p ← x_p + dt Σ P_I N / m_I",
     caption: "Arrows: how far each point moves, drawn far too long.",
     lines(w) {
@@ -322,8 +325,9 @@ function liveLesson(worker) {
     const known = LIVE_COLUMNS.filter(([, from]) => from <= phase);
     const now = ([, from]) => from === phase ? "number now" : "number";
     const head = html("tr", {}, html("th", { scope: "col" }, "node"), ...known.map((column) =>
-      html("th", { scope: "col", class: now(column) }, column[0])));
-    const rows = worked.support.map((_, k) => html("tr", k === 1 ? { class: "here" } : {}, html("th", { scope: "row" }, worked.name(k)),
+      html("th", { scope: "col", class: now(column) }, ...subscripts(column[0]))));
+    const rows = worked.support.map((_, k) => html("tr", k === 1 ? { class: "here" } : {},
+      html("th", { scope: "row" }, worked.name(k)),
       ...known.map((column) => html("td", { class: now(column) }, column[2](worked, k)))));
     find("nodes").replaceChildren(html("thead", {}, head), html("tbody", {}, ...rows));
   }
@@ -331,7 +335,8 @@ function liveLesson(worker) {
   function paint() {
     if (!worked) return;
     const one = LIVE_PHASES[phase];
-    dots.forEach((dot, k) => k === phase ? dot.setAttribute("aria-current", "step") : dot.removeAttribute("aria-current"));
+    dots.forEach((dot) => dot.removeAttribute("aria-current"));
+    dots[phase].setAttribute("aria-current", "step");
     find("step-title").textContent = `${phase + 1} of ${LIVE_PHASES.length}: ${one.title}`;
     find("step-words").replaceChildren(...subscripts(one.words));
     find("formula").replaceChildren(...subscripts(one.formula));

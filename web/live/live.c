@@ -13,7 +13,7 @@
 #define LIVE_TEXT 16384
 #define LIVE_WORDS 200 /* most words of a command line */
 
-/* ---- what the page shares ----------------------------------------------------------------------------------------- */
+/* ---- what the page shares ------------------------------------------------------------------------------------ */
 
 static char text[LIVE_TEXT]; /* words from the page, tables to it */
 
@@ -56,7 +56,7 @@ void live_metals(void)
 /* 0xRRGGBB at t of a colour map of mpm_draw.h. */
 int live_color(int map, double t) { return (int)mpm_draw_map_color((mpm_draw_map)map, t); }
 
-/* ---- the impact --------------------------------------------------------------------------------------------------- */
+/* ---- the impact ---------------------------------------------------------------------------------------------- */
 
 static impact_case scene;
 static impact run;
@@ -112,7 +112,7 @@ double live_advance(int steps)
     return (double)(run.steps - run.world.steps);
 }
 
-/* ---- ... looked at ------------------------------------------------------------------------------------------------ */
+/* ---- ... looked at ------------------------------------------------------------------------------------------- */
 
 #define LIVE_FIELDS 8 /* of a point in a frame: x, z, body, strain, temperature, pressure, velocity, bond */
 
@@ -307,7 +307,7 @@ double *live_digits(void)
     return s;
 }
 
-/* ---- the lesson: one step ----------------------------------------------------------------------------------------- */
+/* ---- the lesson: one step ------------------------------------------------------------------------------------ */
 
 #define LESSON_POINT 17 /* number, body, x, v, mass, density, stress */
 #define LESSON_NODE 19  /* grid node's place along x, y, z, body, mass, momentum, force, velocity, gradient, whether it
@@ -389,8 +389,8 @@ int live_lesson(void)
 /* The k-th phase of step 101. 1, or 0 after a message. */
 int live_lesson_phase(int k)
 {
-    static void (*const phase[])(mpm_world *) = {mpm_p2g,           mpm_forces,        mpm_grid_update, mpm_contact_find,
-                                                 mpm_contact_apply, mpm_g2p,           mpm_musl};
+    static void (*const phase[])(mpm_world *) = {mpm_p2g, mpm_forces, mpm_grid_update, mpm_contact_find,
+                                                 mpm_contact_apply, mpm_g2p, mpm_musl};
     const int last = (int)(sizeof phase / sizeof phase[0]);
     if (k == 0 && mpm_locate(&lesson, 8e-6) < 0) return report(&lesson.fault, "locate");
     if (k > 0 && k <= last) phase[k - 1](&lesson);

@@ -62,7 +62,8 @@ BEGIN {
     print "<link rel=\"icon\" href=\"data:,\">\n<link rel=\"stylesheet\" href=\"live.css\">\n</head>\n<body>"
     print "<header>\n<p class=\"program\">mpm.h &middot; docs/method.md</p>\n<nav aria-label=\"Pages\">"
     print "<a href=\"index.html#impact\">An impact</a>\n<a href=\"index.html#step\">One step of the method</a>"
-    print "<a href=\"method.html\" aria-current=\"page\">The method, written out</a>\n</nav>\n</header>\n<main><article>"
+    print "<a href=\"method.html\" aria-current=\"page\">The method, written out</a>"
+    print "</nav>\n</header>\n<main><article>"
 }
 /^```/ {
     code = !code

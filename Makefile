@@ -168,26 +168,27 @@ figures: ## the figures of docs/method.md
 	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) docs/figures.c -o build/figures $(LDFLAGS) -lm
 	build/figures
 
-# The live page: the headers as WebAssembly, by a clang that can (Debian: clang lld wasi-libc libclang-rt-14-dev-wasm32).
+# The live page: the headers as WebAssembly, by a clang that can (Debian: clang lld wasi-libc
+# libclang-rt-14-dev-wasm32). Its test compares it with build/impact, and needs node and Chromium.
 WASM_CC  ?= clang
 LIVE_PAGE = index.html live.css engine.js worker.js choices.js curves.js impact.js lesson.js live.js
 build/web/live.wasm: web/live/live.c web/live/build.sh $(HEADERS) $(wildcard examples/*.h)
 	@sh web/live/build.sh "$(WASM_CC)"
 
-web: build/web/live.wasm ## the live page into build/web: open build/web/index.html; WASM_CC=clang
-	@cp $(addprefix web/live/,$(LIVE_PAGE)) build/web
+web: build/web/live.wasm ## the live page, for a browser: build/web/index.html; WASM_CC=clang
 	@mkdir -p build/web/data
+	@cp $(addprefix web/live/,$(LIVE_PAGE)) build/web
 	@cp docs/data/method_*.png build/web/data
 	@awk -f web/live/page.awk docs/method.md >build/web/method.html.part
 	@mv build/web/method.html.part build/web/method.html
-	@echo "build/web/index.html"
+	@echo "build/web/index.html: open it, or python3 -m http.server -d build/web"
 
-live-test: build/impact build/tests/live_digits ## the live page's numbers beside the desktop's, and the page in a browser, where they are there
+live-test: build/impact build/tests/live_digits ## the live page beside the desktop, and in headless Chromium
 	@sh tests/web/live.sh "$(MAKE)" "$(WASM_CC)"
 
-build/tests/live_digits: tests/web/live_digits.c
+build/tests/live_digits: tests/web/live_digits.c build/mpm.o
 	@mkdir -p build/tests
-	$(CC) $(STRICT) $(TESTFLAGS) $(INCLUDE) $(NOTE) $< -o $@ $(LDFLAGS) -lm
+	$(CC) $(STRICT) $(COMPILED) $(INCLUDE) $(NOTE) $< build/mpm.o -o $@ $(LDFLAGS) -lm
 
 footprint: ## what each header costs - code, stack, memory, compile time: the table in README.md (5 minutes)
 	sh bench/footprint.sh "$(CC)"

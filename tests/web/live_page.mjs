@@ -41,9 +41,9 @@ const at9917 = (k) => `document.getElementById("state").textContent.includes("st
 
 await page.size(1280, 900);
 check("the page is ready", await page.until(READY, 30));
-check("curves have scales before they have a course", await page.eval(
-  `[...document.querySelectorAll("#panels svg")].every((one) => new Set([...one.querySelectorAll("text")].map(
-    (word) => word.textContent)).size === one.querySelectorAll("text").length - 1)`)); // 0 and 0 ns differ
+check("curves have scales before they have a course", await page.eval(`[...document.querySelectorAll("#panels svg")]
+  .map((one) => [...one.querySelectorAll("text")].map((word) => word.textContent))
+  .every((words) => words.length > 5 && new Set(words).size === words.length)`));
 check("it shows the command", (await text("command")) === "build/impact --geometry axisymmetric");
 await page.picture(PICTURES + "impact-ready.png");
 

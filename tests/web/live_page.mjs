@@ -91,8 +91,8 @@ check("... the desktop's", (await text("headline")) === "It stays.", await text(
 check("... with its numbers", (await text("lead")).includes("mean velocity is −0.38 m/s") &&
   (await text("numbers")).includes("rebound velocity, mean−0.38043m/s"), await text("lead"));
 check("... said to who cannot see", (await text("spoken")).startsWith("It stays."));
-check("three curves over the whole run", await page.eval(`[...document.querySelectorAll("#panels svg")].length === 3 &&
-  [...document.querySelectorAll("#panels path")].every((one) => one.getAttribute("d").split("L").length > 300)`));
+check("three curves over the whole run", await page.until(`[...document.querySelectorAll("#panels svg")].length === 3 &&
+  [...document.querySelectorAll("#panels path")].every((one) => one.getAttribute("d").split("L").length > 300)`, 5));
 await page.picture(PICTURES + "impact-verdict.png");
 await click("again");
 check("from the start", await page.until(at9917(0), 10));

@@ -66,6 +66,7 @@ function liveImpact(worker) {
   /* The choice has changed: the next run begins with it. */
   function changed() {
     offer();
+    find("adheres").hidden = input.contact.value !== "surface" || input.bond.value === "none";
     find("command").textContent = "build/impact " + liveWords(choice()).join(" ");
     begun = wanted = false;
     if (form.checkValidity()) restart();
@@ -192,16 +193,17 @@ function liveImpact(worker) {
     pen.globalAlpha = 1;
   }
 
+  /* Surfaces thin, and thick where they adhere. */
   function paintLines(pen, at, ink, strong) {
-    for (const holds of [0, 1]) {
+    for (const [holds, color, width] of [[0, ink, 1], [1, ink, 4.5], [1, strong, 2]]) {
       pen.beginPath();
       for (let i = 0; i < frame.lines.length; i += 5) {
         const [x0, z0, x1, z1, held] = frame.lines.subarray(i, i + 5);
         if (held !== holds) continue;
         for (const side of [1, -1]) pen.moveTo(at.x(side * x0), at.z(z0)), pen.lineTo(at.x(side * x1), at.z(z1));
       }
-      pen.strokeStyle = holds ? strong : ink;
-      pen.lineWidth = (holds ? 3 : 1) * at.ratio;
+      pen.strokeStyle = color;
+      pen.lineWidth = width * at.ratio;
       pen.stroke();
     }
   }
@@ -238,7 +240,7 @@ function liveImpact(worker) {
     const at = place(), pen = canvas.getContext("2d");
     pen.clearRect(0, 0, canvas.width, canvas.height);
     paintPoints(pen, at);
-    if (frame.lines.length) paintLines(pen, at, ink, style.getPropertyValue("--series-1"));
+    if (frame.lines.length) paintLines(pen, at, ink, style.getPropertyValue("--series-4"));
     if (find("grid-lines").checked) paintGrid(pen, at, ink);
     paintWords(pen, at, ink);
     const end = samples[0]?.end ?? 1;

@@ -535,7 +535,7 @@ static inline impact_result impact_measure(const impact *s, const impact_case *c
     return r;
 }
 
-/* The verdict: the particle moves with the substrate, and something holds it. */
+/* Whether the particle stays: it moves with the substrate to 5 m/s, and something holds it. */
 static inline int impact_stays(const impact *s, const impact_result *r)
 {
     return fabs(r->relative) <= 5 && (s->world.held > 0 || r->meeting.bonded > 0);

@@ -13,8 +13,9 @@ export async function chromium(program, folder) {
   fs.rmSync(folder, { recursive: true, force: true });
   const browser = spawn(program, [...FLAGS, "--user-data-dir=" + folder, "about:blank"],
     { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
-  const gone = new Promise((resolve) => browser.on("exit", resolve));
   const waiting = new Map(), listeners = [];
+  const gone = new Promise((resolve) => browser.on("exit", resolve));
+  gone.then(() => waiting.forEach(({ reject }) => reject(new Error("the browser has ended"))));
   let last = 0, rest = "";
   browser.stdio[4].setEncoding("utf8").on("data", (data) => {
     const messages = (rest + data).split("\0");

@@ -116,6 +116,12 @@ await wait(500);
 await page.picture(PICTURES + "impact-surface.png");
 await choose("velocity", -5);
 check("what makes no sense cannot be run", await page.eval("document.getElementById('run').disabled"));
+await choose("velocity", 300);
+await page.eval(`{ const offered = liveWords; liveWords = (choice) => [...offered(choice), "--material", "cheese"]; }`);
+await choose("velocity", 310);
+check("what the program refuses is shown in its words", await page.until(`!document.getElementById("fault").hidden &&
+  document.getElementById("fault").textContent.startsWith("error: --material cheese: a name is not known")`, 10),
+  await text("fault"));
 check("no errors so far", page.errors.length === 0, page.errors.join("; "));
 
 /* ---- the step ---- */

@@ -6,6 +6,7 @@
 #include "case.h"
 #include "mpm.h"
 #include "mpm_draw.h"
+#include "mpm_hdf5.h"
 #include "mpm_surface.h"
 #include "program.h"
 #include "terminal.h"
@@ -17,6 +18,7 @@ typedef struct output {
     double rate;                /* a strain rate of the world, in 1/us */
     int64_t frames;             /* wanted, evenly in time, both ends included; 1: of the end */
     int quiet;
+    int64_t hdf5;               /* all frames in one file too: how it is packed, 0 .. 9; -1: no */
 
     int64_t frame;              /* frames written */
     double cpu, earlier;        /* seconds without the writing: by output_cpu; when output_start was called */
@@ -35,6 +37,7 @@ static inline output output_of(const char *folder, const char *name, const char 
     o.time = time;
     o.rate = rate;
     o.frames = 9;
+    o.hdf5 = -1;
     return o;
 }
 
@@ -42,14 +45,19 @@ static inline void output_options(output *o, option *options, int *n)
 {
     option_add(options, n, "frames", OPTION_INTEGER, &o->frames,
                "pictures and ParaView files, evenly in time, both ends included; 1: of the end alone");
+    option_add(options, n, "hdf5", OPTION_INTEGER, &o->hdf5,
+               "all frames in one file of HDF5 too, .vtkhdf with .xmf: gzip level 0 .. 9; -1: no");
     option_add(options, n, "out", OPTION_TEXT, &o->folder, "output folder");
     option_add(options, n, "quiet", OPTION_FLAG, &o->quiet, "no progress line, no table");
 }
 
 static inline int output_check(const output *o, char *message, size_t n)
 {
-    return case_wants(o->frames >= 0 && o->frames <= 9999, "frames", (double)o->frames, "must be 0 .. 9999", message,
-                      n);
+    if (!case_wants(o->frames >= 0 && o->frames <= 9999, "frames", (double)o->frames, "must be 0 .. 9999", message, n) ||
+        !case_wants(o->hdf5 >= -1 && o->hdf5 <= 9, "hdf5", (double)o->hdf5, "must be -1 .. 9", message, n))
+        return 0;
+    return case_wants(o->hdf5 < 0 || mpm_hdf5_built(), "hdf5", (double)o->hdf5,
+                      "needs a program built with the HDF5 library: `make hdf5` or `make HDF5=1`", message, n);
 }
 
 /* Makes the folder and begins the series. Returns 1, or 0 after a message, as all that write. */
@@ -196,6 +204,41 @@ static inline int output_png(output *o, const output_picture *p, const char *nam
 #define OUTPUT_FIELDS 11 /* of every run */
 #define OUTPUT_MORE 4    /* room for its own */
 
+/* With --hdf5: the frame that a .vtu was written of, into folder/series.vtkhdf, and series.xmf of all so far. */
+static inline int output_hdf5(const output *o, const mpm_io_vtu_desc *v, const char *series)
+{
+    mpm_hdf5_field field[OUTPUT_FIELDS + OUTPUT_MORE];
+    mpm_hdf5_desc d = mpm_hdf5_desc_default();
+    char name[64], path[PATH_BYTES], xmf[PATH_BYTES];
+    mpm_fault fault;
+    int k;
+    if (o->hdf5 < 0) return 1;
+    for (k = 0; k < v->field_count; k++) {
+        const mpm_io_field *f = &v->fields[k];
+        field[k] = mpm_hdf5_scalar(f->name, NULL, f->scale);
+        field[k].components = f->components;
+        memcpy(field[k].data, f->data, sizeof field[k].data);
+        field[k].bytes = f->bytes;
+        field[k].integers = f->integers;
+    }
+    d.count = v->count;
+    memcpy(d.x, v->x, sizeof d.x);
+    d.fields = field;
+    d.field_count = v->field_count;
+    d.time = v->time;
+    d.float32 = v->float32;
+    d.gzip = (int)o->hdf5;
+    d.note = v->note;
+    d.cell_count = v->cell_count;
+    d.cell_points = v->cell_points;
+    d.cells = v->cells;
+    snprintf(name, sizeof name, "%s.vtkhdf", series);
+    file_in(o->folder, name, path, sizeof path);
+    snprintf(name, sizeof name, "%s.xmf", series);
+    return (mpm_hdf5_frame(path, o->frame, &d, &fault) >= 0 &&
+            mpm_hdf5_xdmf(path, file_in(o->folder, name, xmf, sizeof xmf), &fault) >= 0) || report(&fault, path);
+}
+
 /* All that ParaView can show, with `count` fields of the run's own, into folder/name. */
 static inline int output_points(const output *o, const mpm_world *w, const mpm_io_field *more, int count,
                                 const char *name)
@@ -230,9 +273,10 @@ static inline int output_points(const output *o, const mpm_world *w, const mpm_i
     d.time = (double)w->time * 1e3;
     d.float32 = 1;
     d.note = note;
-    ok = mpm_io_vtu(file_in(o->folder, name, path, sizeof path), &d, &fault) >= 0;
+    ok = mpm_io_vtu(file_in(o->folder, name, path, sizeof path), &d, &fault) >= 0 || report(&fault, path);
+    ok = ok && output_hdf5(o, &d, o->name);
     free(body);
-    return ok || report(&fault, path);
+    return ok;
 }
 
 #define OUTPUT_MARKER 14 /* values of a marker: place, velocity, traction of adhesion, pressure, gap, G, W, opening */
@@ -310,7 +354,8 @@ static inline int output_cells(const output *o, const mpm_world *w, int32_t n, c
     d.time = (double)w->time * 1e3;
     d.float32 = 1;
     d.note = note;
-    return mpm_io_vtu(file_in(o->folder, name, path, sizeof path), &d, &fault) >= 0 || report(&fault, path);
+    if (mpm_io_vtu(file_in(o->folder, name, path, sizeof path), &d, &fault) < 0) return report(&fault, path);
+    return output_hdf5(o, &d, "surface");
 }
 
 /* The surfaces of the frame to come, surface_NNNN.vtu, and its entry in a series of their own, surface.pvd. */

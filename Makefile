@@ -32,7 +32,7 @@ BENCH    = $(patsubst bench/%.c,build/bench/%,$(wildcard bench/*.c))
 all: $(EXAMPLES) $(STUDIES) $(TESTS) $(FLOATS) $(BENCH) ## everything into build/ (what a plain `make` does)
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
 
 run: build/impact ## the main job: an aluminium particle hits an aluminium plate at 810 m/s
 	build/impact --out build/impact-out
@@ -40,12 +40,24 @@ run: build/impact ## the main job: an aluminium particle hits an aluminium plate
 test: $(EXAMPLES) $(STUDIES) $(TESTS) $(FLOATS) ## every test, double and float, the compile tests, the packages; JOBS=2 at a time
 	@sh tests/run.sh $(JOBS) "$(CC)" $(SCRIPTS) $(TESTS)
 
+# mpm_hdf5.h writes files of HDF5 if the library is compiled for it: `make HDF5=1`, here and in all that is linked with
+# it. Where this changes, the library is compiled again. pkg-config knows hdf5-serial on Debian, hdf5 elsewhere.
+HDF5_ASK = $(shell pkg-config $(1) hdf5-serial 2>/dev/null || pkg-config $(1) hdf5 2>/dev/null)
+WITH_HDF5 = -DMPM_HDF5 $(patsubst -I%,-isystem %,$(call HDF5_ASK,--cflags))
+HDF5_LIBS = $(call HDF5_ASK,--libs)
+ifdef HDF5
+override LDFLAGS += $(HDF5_LIBS)
+endif
+build/hdf5.on build/hdf5.off:
+	@mkdir -p build
+	@rm -f build/hdf5.on build/hdf5.off && touch $@
+
 # The library is compiled once, in double and in float, and linked with everything that MPM_COMPILED keeps from
 # bringing its own. bench/step brings its own: its times are compared with those of earlier versions.
 COMPILED = -DMPM_COMPILED $(TESTFLAGS)
-build/mpm.o: mpm.c
+build/mpm.o: mpm.c build/hdf5.$(if $(HDF5),on,off)
 	@mkdir -p build
-	$(CC) $(STRICT) $(CFLAGS) $(NOTE) -c $< -o $@
+	$(CC) $(STRICT) $(CFLAGS) $(if $(HDF5),$(WITH_HDF5)) $(NOTE) -c $< -o $@
 
 build/mpm_f32.o: mpm.c
 	@mkdir -p build
@@ -96,6 +108,25 @@ $(VERIFY): build/verify/%: tests/verify/%.c build/mpm.o
 	@mkdir -p build/verify
 	$(CC) $(STRICT) $(COMPILED) $(INCLUDE) -Itests/verify $(NOTE) $< build/mpm.o -o $@ $(LDFLAGS) -lm
 
+# What `make hdf5` runs, whether HDF5=1 or not.
+build/mpm_hdf5.o: mpm.c
+	@mkdir -p build
+	$(CC) $(STRICT) $(CFLAGS) $(WITH_HDF5) $(NOTE) -c $< -o $@
+
+build/impact_hdf5: examples/impact.c build/mpm_hdf5.o
+	$(CC) $(STRICT) $(COMPILED) $(INCLUDE) $(NOTE) $< build/mpm_hdf5.o -o $@ $(LDFLAGS) $(HDF5_LIBS) -lm
+
+build/many_particles_hdf5: examples/studies/many_particles.c build/mpm_hdf5.o
+	$(CC) $(STRICT) $(COMPILED) $(INCLUDE) $(NOTE) $< build/mpm_hdf5.o -o $@ $(LDFLAGS) $(HDF5_LIBS) -lm
+
+build/tests/hdf5/frames: tests/42_hdf5.c build/mpm_hdf5.o
+	@mkdir -p build/tests/hdf5
+	$(CC) $(STRICT) $(COMPILED) $(INCLUDE) $(NOTE) $< build/mpm_hdf5.o -o $@ $(LDFLAGS) $(HDF5_LIBS) -lm
+
+build/tests/hdf5/append: tests/hdf5/append.c build/mpm_hdf5.o
+	@mkdir -p build/tests/hdf5
+	$(CC) $(STRICT) $(COMPILED) $(INCLUDE) $(NOTE) $< build/mpm_hdf5.o -o $@ $(LDFLAGS) $(HDF5_LIBS) -lm
+
 -include $(wildcard build/*.d build/*/*.d build/*/*/*.d)
 # The notes may name a source that has moved since: no reason to stop.
 %.c: ;
@@ -144,6 +175,9 @@ predict: build/impact build/critical_velocity ## contact on surfaces, whatever t
 SECONDS ?= 20
 fuzz: ## random inputs for everything that reads or describes: SECONDS=20 for each target of tests/fuzz
 	@CC="$(CC)" sh tests/fuzz/run.sh $(SECONDS) $(JOBS)
+
+hdf5: ## builds build/impact_hdf5 and many_particles_hdf5, which know --hdf5, and has their files read by h5py, VTK, ParaView
+	@sh tests/hdf5/run.sh "$(CC)" "$(MAKE)" "$(WITH_HDF5)" "$(HDF5_LIBS)"
 
 KILLS ?= 200
 hard: ## memory and disks that fail, kill -9, sanitizers, analysers, compilers: writes docs/quality.md; KILLS=200

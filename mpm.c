@@ -10,6 +10,7 @@
 #include "mpm.h"
 #include "mpm_bond.h"
 #include "mpm_draw.h"
+#include "mpm_hdf5.h"
 #include "mpm_io.h"
 #include "mpm_measure.h"
 #include "mpm_ptw.h"

@@ -30,10 +30,10 @@
 
    IF THE RUN IS KILLED
      A new file is written under <path>.part and renamed when its first frame is whole. Later frames are added in an
-     order that leaves the file sound at every instant (HDF5's SWMR). Killed between frames, it can be read at
-     once. Killed while one is being added, it holds the frames before it, but is marked as open: `h5clear -s FILE`
-     takes the mark off, and so does mpm_hdf5_frame when the run goes on. What the machine itself loses when it
-     stops - power, disk - is not covered.
+     order that leaves the file sound at every instant (HDF5's SWMR). Killed between frames, it can be read at once.
+     Killed while one is being added, it holds the frames before it, but is marked as open, and most readers refuse it:
+     `h5clear -s --increment=0 FILE` takes the mark off; mpm_hdf5_frame, when the run goes on, takes the whole frames
+     into a new file. What the machine itself loses when it stops - power, disk - is not covered.
 
    A COMPLETE PROGRAM
        #define MPM_IMPLEMENTATION
@@ -459,13 +459,12 @@ typedef struct mpm__hdf5_file {
     hid_t file, root, points, steps, offsets; /* groups VTKHDF, PointData, Steps, PointDataOffsets */
 } mpm__hdf5_file;
 
-/* How a file is opened: in the format of HDF5 1.10, which has SWMR; clear: with the mark of an open one taken off. */
-static inline hid_t mpm__hdf5_access(int clear)
+/* How a file is opened: in the format of HDF5 1.10, which has SWMR; without waiting long for what is not there. */
+static inline hid_t mpm__hdf5_access(void)
 {
     const hid_t how = H5Pcreate(H5P_FILE_ACCESS);
-    const hbool_t yes = 1;
     H5Pset_libver_bounds(how, H5F_LIBVER_V110, H5F_LIBVER_LATEST);
-    if (clear) H5Pset(how, "clear_status_flags", &yes);
+    H5Pset_metadata_read_attempts(how, 10);
     return how;
 }
 
@@ -478,9 +477,9 @@ static inline int mpm__hdf5_groups(mpm__hdf5_file *f)
     return f->offsets >= 0 && f->points >= 0;
 }
 
-static inline int mpm__hdf5_open(mpm__hdf5_file *f, const char *path, unsigned flags, int clear)
+static inline int mpm__hdf5_open(mpm__hdf5_file *f, const char *path, unsigned flags)
 {
-    const hid_t how = mpm__hdf5_access(clear);
+    const hid_t how = mpm__hdf5_access();
     f->file = H5Fopen(path, flags, how);
     H5Pclose(how);
     return mpm__hdf5_groups(f);
@@ -526,7 +525,7 @@ static inline hid_t mpm__hdf5_stored(const mpm_hdf5_field *f, int float32)
     return float32 || sizeof(mpm_real) == sizeof(float) ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
 }
 
-/* A file without frames: groups and arrays, chunks as long as a frame or 32768 rows. */
+/* Its arrays, without rows: chunks as long as a frame or 32768 rows. */
 static inline int mpm__hdf5_tables(mpm__hdf5_file *f, const mpm_hdf5_desc *d)
 {
     const mpm_hdf5_field points = mpm_hdf5_vector("Points", d->x[0], d->x[1], d->x[2], d->scale);
@@ -552,9 +551,10 @@ static inline int mpm__hdf5_tables(mpm__hdf5_file *f, const mpm_hdf5_desc *d)
     return good;
 }
 
-static inline int mpm__hdf5_begin(mpm__hdf5_file *f, const char *path, const mpm_hdf5_desc *d)
+/* A file without arrays. */
+static inline int mpm__hdf5_begin(mpm__hdf5_file *f, const char *path, const char *note)
 {
-    const hid_t how = mpm__hdf5_access(0);
+    const hid_t how = mpm__hdf5_access();
     const int64_t version[2] = {2, 0}, none = 0;
     f->file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, how);
     H5Pclose(how);
@@ -565,8 +565,7 @@ static inline int mpm__hdf5_begin(mpm__hdf5_file *f, const char *path, const mpm
     return f->offsets >= 0 && mpm__hdf5_attribute(f->root, "Version", H5T_NATIVE_INT64, 2, version) &&
            mpm__hdf5_text(f->root, "Type", "UnstructuredGrid") &&
            mpm__hdf5_attribute(f->steps, "NSteps", H5T_NATIVE_INT64, 0, &none) &&
-           mpm__hdf5_text(f->file, "mpm.h", MPM_VERSION) && mpm__hdf5_text(f->file, "note", d->note ? d->note : "") &&
-           mpm__hdf5_tables(f, d);
+           mpm__hdf5_text(f->file, "mpm.h", MPM_VERSION) && mpm__hdf5_text(f->file, "note", note);
 }
 
 /* ---- a frame ------------------------------------------------------------------------------- */
@@ -661,22 +660,66 @@ static inline void *mpm__hdf5_buffer(const mpm_hdf5_desc *d)
 
 /* ---- dropping frames ----------------------------------------------------------------------- */
 
-static inline int mpm__hdf5_cut(hid_t at, const char *name, hsize_t rows)
-{
-    const hid_t set = H5Dopen2(at, name, H5P_DEFAULT);
-    hsize_t size[2];
-    const hsize_t there = mpm__hdf5_rows(at, name, &size[1]);
-    int good;
-    size[0] = rows;
-    good = there >= rows && H5Dset_extent(set, size) >= 0;
-    H5Dclose(set);
-    return good;
-}
-
 /* The name of a group's member number i. */
 static inline int mpm__hdf5_member(hid_t group, hsize_t i, char name[MPM__HDF5_NAME])
 {
     return H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name, MPM__HDF5_NAME, H5P_DEFAULT) > 0;
+}
+
+/* A text attribute, into text[MPM__HDF5_NAME]; "" where there is none. */
+static inline void mpm__hdf5_get_text(hid_t at, const char *name, char *text)
+{
+    const hid_t a = H5Aopen(at, name, H5P_DEFAULT), type = H5Aget_type(a);
+    memset(text, 0, MPM__HDF5_NAME);
+    if (a < 0 || H5Tget_size(type) >= MPM__HDF5_NAME || H5Aread(a, type, text) < 0) text[0] = 0;
+    H5Tclose(type);
+    H5Aclose(a);
+}
+
+/* Copies rows from one array to another, a chunk's length at a time. */
+static inline int mpm__hdf5_rows_over(hid_t from, hid_t to, hid_t type, hsize_t rows, hsize_t columns)
+{
+    const hid_t there = H5Dget_space(from), here = H5Dget_space(to);
+    const hsize_t most = rows < 32768 ? rows : 32768;
+    void *buffer = MPM_MALLOC(mpm_size_mul((size_t)(most * columns), H5Tget_size(type)) + 1);
+    const int rank = columns > 1 ? 2 : 1;
+    hsize_t first[2] = {0, 0}, count[2];
+    int good = buffer != NULL;
+    for (count[1] = columns; good && first[0] < rows; first[0] += most) {
+        hid_t memory;
+        count[0] = rows - first[0] < most ? rows - first[0] : most;
+        memory = H5Screate_simple(rank, count, NULL);
+        good = H5Sselect_hyperslab(there, H5S_SELECT_SET, first, NULL, count, NULL) >= 0 &&
+               H5Sselect_hyperslab(here, H5S_SELECT_SET, first, NULL, count, NULL) >= 0 &&
+               H5Dread(from, type, memory, there, H5P_DEFAULT, buffer) >= 0 &&
+               H5Dwrite(to, type, memory, here, H5P_DEFAULT, buffer) >= 0;
+        H5Sclose(memory);
+    }
+    MPM_FREE(buffer);
+    H5Sclose(here);
+    H5Sclose(there);
+    return good;
+}
+
+/* Makes an array like one of another file, of its first rows. */
+static inline int mpm__hdf5_over(hid_t from, hid_t to, const char *name, hsize_t rows)
+{
+    const hid_t set = H5Dopen2(from, name, H5P_DEFAULT), type = H5Dget_type(set), how = H5Dget_create_plist(set);
+    hsize_t columns;
+    const hsize_t there = mpm__hdf5_rows(from, name, &columns);
+    const hsize_t size[2] = {rows, columns}, most[2] = {H5S_UNLIMITED, columns};
+    const hid_t space = H5Screate_simple(columns > 1 ? 2 : 1, size, most);
+    const hid_t made = H5Dcreate2(to, name, type, space, H5P_DEFAULT, how, H5P_DEFAULT);
+    char text[MPM__HDF5_NAME];
+    int good = there >= rows && mpm__hdf5_rows_over(set, made, type, rows, columns);
+    mpm__hdf5_get_text(set, "name", text);
+    good = good && mpm__hdf5_text(made, "name", text);
+    H5Dclose(made);
+    H5Sclose(space);
+    H5Pclose(how);
+    H5Tclose(type);
+    H5Dclose(set);
+    return good;
 }
 
 /* Where frame number `frame` begins: the sum of an array of counts before it. */
@@ -688,8 +731,8 @@ static inline int mpm__hdf5_before(hid_t at, const char *name, int64_t frame, hs
     return 1;
 }
 
-/* Leaves the first `frames` of them in an open file. */
-static inline int mpm__hdf5_keep(const mpm__hdf5_file *f, int64_t frames)
+/* The first `frames` of an open file, into one without arrays. */
+static inline int mpm__hdf5_keep(const mpm__hdf5_file *f, const mpm__hdf5_file *to, int64_t frames)
 {
     char name[MPM__HDF5_NAME];
     hsize_t points = 0, cells = 0, ids = 0, i, n = (hsize_t)frames;
@@ -697,43 +740,36 @@ static inline int mpm__hdf5_keep(const mpm__hdf5_file *f, int64_t frames)
                mpm__hdf5_before(f->root, "NumberOfCells", frames, &cells) &&
                mpm__hdf5_before(f->root, "NumberOfConnectivityIds", frames, &ids);
     int k;
-    for (k = 0; k < 3; k++) good = good && mpm__hdf5_cut(f->root, mpm__hdf5_part[k], n);
-    for (k = 0; k < 5; k++) good = good && mpm__hdf5_cut(f->steps, mpm__hdf5_step[k], n);
-    good = good && mpm__hdf5_cut(f->steps, "Values", n) && mpm__hdf5_cut(f->root, "Points", points) &&
-           mpm__hdf5_cut(f->root, "Connectivity", ids) && mpm__hdf5_cut(f->root, "Types", cells) &&
-           mpm__hdf5_cut(f->root, "Offsets", cells + n);
+    for (k = 0; k < 3; k++) good = good && mpm__hdf5_over(f->root, to->root, mpm__hdf5_part[k], n);
+    for (k = 0; k < 5; k++) good = good && mpm__hdf5_over(f->steps, to->steps, mpm__hdf5_step[k], n);
+    good = good && mpm__hdf5_over(f->steps, to->steps, "Values", n) &&
+           mpm__hdf5_over(f->root, to->root, "Points", points) &&
+           mpm__hdf5_over(f->root, to->root, "Connectivity", ids) &&
+           mpm__hdf5_over(f->root, to->root, "Types", cells) &&
+           mpm__hdf5_over(f->root, to->root, "Offsets", cells + n);
     for (i = 0; good && mpm__hdf5_member(f->points, i, name); i++)
-        good = mpm__hdf5_cut(f->points, name, points) && mpm__hdf5_cut(f->offsets, name, n);
-    return good && mpm__hdf5_set_steps(f, frames);
+        good = mpm__hdf5_over(f->points, to->points, name, points) &&
+               mpm__hdf5_over(f->offsets, to->offsets, name, n);
+    return good && mpm__hdf5_set_steps(to, frames);
 }
 
-static inline int mpm__hdf5_copy(const char *from, const char *to)
-{
-    char block[4096];
-    FILE *in = fopen(from, "rb"), *out = in ? fopen(to, "wb") : NULL;
-    size_t n;
-    int good = out != NULL;
-    while (good && (n = fread(block, 1, sizeof block, in)) > 0) good = fwrite(block, 1, n, out) == n;
-    good = good && !ferror(in);
-    if (in) fclose(in);
-    if (out && fclose(out) != 0) good = 0;
-    return good;
-}
-
-/* Puts a copy with the first `frames` in the place of a file that has more, or is marked as open. */
+/* Puts a copy with the first `frames` in the place of a file that has more, or is marked as open: nothing is changed
+   in what a killed process left. */
 static inline int mpm__hdf5_repair(const char *path, const char *part, int64_t frames)
 {
-    mpm__hdf5_file f;
+    mpm__hdf5_file f, to;
+    char note[MPM__HDF5_NAME];
     int64_t there = 0;
-    int good = mpm__hdf5_copy(path, part);
+    int good = mpm__hdf5_open(&f, path, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ) && mpm__hdf5_steps(&f, &there) &&
+               there >= frames;
     if (good) {
-        good = mpm__hdf5_open(&f, part, H5F_ACC_RDWR, 1) && mpm__hdf5_steps(&f, &there) && there >= frames &&
-               mpm__hdf5_keep(&f, frames);
-        good = mpm__hdf5_close(&f) && good;
+        mpm__hdf5_get_text(f.file, "note", note);
+        good = mpm__hdf5_begin(&to, part, note) && mpm__hdf5_keep(&f, &to, frames);
+        good = mpm__hdf5_close(&to) && good;
+        if (!good) remove(part);
     }
-    if (good) return mpm__hdf5_rename(part, path);
-    remove(part);
-    return 0;
+    mpm__hdf5_close(&f);
+    return good && mpm__hdf5_rename(part, path);
 }
 
 /* Whether a file can be gone on with as it is: so many frames, and nothing behind them. */
@@ -741,7 +777,7 @@ static inline int mpm__hdf5_ready(const char *path, int64_t frames)
 {
     mpm__hdf5_file f;
     int64_t there = -1;
-    const int good = mpm__hdf5_open(&f, path, H5F_ACC_RDONLY, 0) && mpm__hdf5_steps(&f, &there) && there == frames &&
+    const int good = mpm__hdf5_open(&f, path, H5F_ACC_RDONLY) && mpm__hdf5_steps(&f, &there) && there == frames &&
                      mpm__hdf5_rows(f.steps, "Values", NULL) == (hsize_t)frames;
     mpm__hdf5_close(&f);
     return good;
@@ -753,7 +789,8 @@ static inline mpm_status mpm__hdf5_first(const char *path, const char *part, con
                                          mpm_fault *fault)
 {
     mpm__hdf5_file f;
-    int good = mpm__hdf5_begin(&f, part, d) && mpm__hdf5_add(&f, 0, d, buffer);
+    int good = mpm__hdf5_begin(&f, part, d->note ? d->note : "") && mpm__hdf5_tables(&f, d) &&
+               mpm__hdf5_add(&f, 0, d, buffer);
     good = mpm__hdf5_close(&f) && good;
     if (good && mpm__hdf5_rename(part, path)) return MPM_OK;
     remove(part);
@@ -784,7 +821,7 @@ static inline mpm_status mpm__hdf5_next(const char *path, const char *part, int6
     int good, other;
     if (!mpm__hdf5_ready(path, frame) && !mpm__hdf5_repair(path, part, frame))
         return mpm_fail(fault, MPM_ERR_FILE, "a file of HDF5 that holds all frames before number", 0, frame);
-    good = mpm__hdf5_open(&f, path, H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, 0);
+    good = mpm__hdf5_open(&f, path, H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE);
     other = good ? mpm__hdf5_other(&f, d) : -1;
     good = good && other < 0 && mpm__hdf5_add(&f, frame, d, buffer);
     good = mpm__hdf5_close(&f) && good;
@@ -818,7 +855,7 @@ MPM_API mpm_status mpm_hdf5_frames(const char *path, int64_t *frames, mpm_fault 
 {
     const mpm__hdf5_say say = mpm__hdf5_hush();
     mpm__hdf5_file f;
-    const int good = mpm__hdf5_open(&f, path, H5F_ACC_RDONLY, 0) && mpm__hdf5_steps(&f, frames);
+    const int good = mpm__hdf5_open(&f, path, H5F_ACC_RDONLY) && mpm__hdf5_steps(&f, frames);
     mpm__hdf5_close(&f);
     mpm__hdf5_speak(say);
     if (good) return MPM_OK;
@@ -877,12 +914,10 @@ static inline void mpm__hdf5_slab(FILE *out, const char *file, hid_t at, const c
 /* A field's name as it was given. */
 static inline void mpm__hdf5_given(hid_t points, const char *name, char text[MPM__HDF5_NAME])
 {
-    const hid_t a = H5Aopen_by_name(points, name, "name", H5P_DEFAULT, H5P_DEFAULT), type = H5Aget_type(a);
-    memset(text, 0, MPM__HDF5_NAME);
-    if (H5Tget_size(type) >= MPM__HDF5_NAME || H5Aread(a, type, text) < 0)
-        mpm_append(text, MPM__HDF5_NAME, 0, name);
-    H5Tclose(type);
-    H5Aclose(a);
+    const hid_t set = H5Dopen2(points, name, H5P_DEFAULT);
+    mpm__hdf5_get_text(set, "name", text);
+    if (!text[0]) mpm_append(text, MPM__HDF5_NAME, 0, name);
+    H5Dclose(set);
 }
 
 /* Where a frame's parts begin and how long they are. */
@@ -962,7 +997,7 @@ MPM_API mpm_status mpm_hdf5_xdmf(const char *path, const char *xmf, mpm_fault *f
     char *part = mpm__hdf5_path(xmf, ".part");
     FILE *out = part ? fopen(part, "wb") : NULL;
     mpm__hdf5_file f;
-    int good = mpm__hdf5_open(&f, path, H5F_ACC_RDONLY, 0);
+    int good = mpm__hdf5_open(&f, path, H5F_ACC_RDONLY);
     const int readable = good;
     if (out) {
         good = good && mpm__hdf5_series(out, mpm__hdf5_base(path), &f);

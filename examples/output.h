@@ -53,7 +53,8 @@ static inline void output_options(output *o, option *options, int *n)
 
 static inline int output_check(const output *o, char *message, size_t n)
 {
-    if (!case_wants(o->frames >= 0 && o->frames <= 9999, "frames", (double)o->frames, "must be 0 .. 9999", message, n) ||
+    if (!case_wants(o->frames >= 0 && o->frames <= 9999, "frames", (double)o->frames, "must be 0 .. 9999", message,
+                    n) ||
         !case_wants(o->hdf5 >= -1 && o->hdf5 <= 9, "hdf5", (double)o->hdf5, "must be -1 .. 9", message, n))
         return 0;
     return case_wants(o->hdf5 < 0 || mpm_hdf5_built(), "hdf5", (double)o->hdf5,

@@ -15,6 +15,7 @@ symbol() {
     mpm_bond.h) echo '(mpm_bond_check(0, 0) != MPM_OK)' ;;
     mpm_measure.h) echo '(int)mpm_critical_velocity_2003(1, 1, 1, 1)' ;;
     mpm_io.h) echo '(int)mpm_io_number_text(0, 0, 0)' ;;
+    mpm_hdf5.h) echo 'mpm_hdf5_built()' ;;
     mpm_draw.h) echo '(int)mpm_draw_canvas_bytes(0, 0)' ;;
     mpm_surface.h) echo '(mpm_surfaces_check(0, 0) != MPM_OK)' ;;
     mpm_spray.h) echo '(int)mpm_spray_bytes(0)' ;;

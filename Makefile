@@ -197,6 +197,9 @@ N ?= 5
 bench-against: ## the speed of the step beside REV=<tag or commit>: N=5 runs of each in turns, ratio of medians
 	@sh bench/against.sh $(or $(REV),$(error REV=<tag or commit>)) $(N) "$(CC)" $(CFLAGS)
 
+api: ## the reference of all public names, from the headers' comments: build/api/index.html
+	@sh packaging/api.sh build/api
+
 figures: ## the figures of docs/method.md
 	@mkdir -p build
 	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) docs/figures.c -o build/figures $(LDFLAGS) -lm

@@ -90,6 +90,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* The version; mpm_version() is that of the library that was linked. */
 #define MPM_VERSION_MAJOR 0
 #define MPM_VERSION_MINOR 2
 #define MPM_VERSION_PATCH 0
@@ -100,6 +101,7 @@
 #error "mpm.h checks for NaN and uses infinity: add -fno-finite-math-only (/fp:precise), or define MPM_FINITE_MATH"
 #endif
 
+/* The number type, literals of it, and the distance from 1 to the next of its numbers. */
 #ifdef MPM_FLOAT
 typedef float mpm_real;
 #define MPM_R(x) x##f
@@ -112,6 +114,7 @@ typedef double mpm_real;
 #define MPM_DIGITS 17
 #endif
 
+/* What stands before every function of the library. */
 #ifdef MPM_COMPILED
 #undef MPM_IMPLEMENTATION
 #endif
@@ -229,7 +232,7 @@ typedef struct mpm_fault {
 
 #define MPM_MARK 0x6d706d32u /* what a _default function leaves in `mark`: a zeroed description is told by it */
 
-#define MPM_PI MPM_R(3.14159265358979323846)
+#define MPM_PI MPM_R(3.14159265358979323846) /* pi */
 #define MPM_ALIGN 64 /* bytes: of what mpm_carve hands out */
 
 /* For functions that must be inlined to be fast: into loops that are to be done several points at a time, or, with
@@ -324,6 +327,7 @@ static inline mpm_blob mpm_blob_of(const char *name, void *data, size_t bytes)
     return b;
 }
 
+/* The second of them. Test: 40_io "checkpoint". */
 static inline mpm_blob mpm_blob_array(const char *name, void *data, size_t count, size_t room, size_t size)
 {
     mpm_blob b = mpm_blob_of(name, data, count * size);
@@ -395,11 +399,13 @@ typedef mpm_status (*mpm_stress_fn)(const void *material, const mpm_block *block
 #define MPM__NAME_BAR(name, word, text) "|" word
 #define MPM_NAMES(LIST) (&("" LIST(MPM__NAME_BAR))[1])
 
+/* What the grid and the points are in space. */
 #define MPM_GEOMETRY_LIST(X)                                                     \
     X(MPM_3D, "3d", "three dimensions")                                          \
     X(MPM_PLANE_STRAIN, "plane", "the plane x-z, per unit depth in y")           \
     X(MPM_AXISYMMETRIC, "axisymmetric", "rings about z: x is the radius")
 
+/* The functions between points and nodes. */
 #define MPM_BASIS_LIST(X)                                                        \
     X(MPM_LINEAR, "linear", "trilinear hexahedra, the thesis's (A 3.20)")        \
     X(MPM_GIMP, "gimp", "uGIMP, Bardenhagen and Kober 2004: points are boxes of fixed size") \
@@ -449,6 +455,7 @@ typedef enum mpm_normal_rule { MPM_NORMAL_LIST(MPM_LIST_ENUM) MPM_NORMAL_RULES }
 
 /* ---- shapes -------------------------------------------------------------------------------- */
 
+/* What a shape is; the functions below make them. */
 typedef enum mpm_shape_kind {
     MPM_SHAPE_NONE = 0,   /* bodies made from points */
     MPM_SHAPE_ELLIPSOID,  /* a sphere if the three half axes are equal */
@@ -618,6 +625,7 @@ typedef struct mpm_body_desc {
 /* No motion, 298 K, no stress, full dampers where asked for, a surface layer of one spacing. Test: 21_world. */
 MPM_API mpm_body_desc mpm_body_desc_default(void);
 
+/* A body in the world: its description, and its points, one behind the other. */
 typedef struct mpm_body {
     mpm_body_desc desc;
     int32_t first, count, active;
@@ -644,7 +652,7 @@ typedef struct mpm_node {
     int32_t touch;         /* its record in world.touch, or -1: at contact nodes and walls only */
 } mpm_node;
 
-#define MPM_NODE_CONTACT 64
+#define MPM_NODE_CONTACT 64 /* a flag of a node: bodies meet there */
 
 /* What a slot carries besides where bodies meet, or meet a wall. */
 typedef struct mpm_touch {

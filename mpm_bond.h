@@ -136,6 +136,7 @@ typedef mpm_real (*mpm_bond_fn)(void *context, const mpm_world *w, int32_t point
    is held together in separation (see mpm_bond.width). */
 typedef mpm_real (*mpm_bond_pair_fn)(void *context, const mpm_world *w, const mpm_pair *pair, mpm_real D);
 
+/* A bond: its rule, its numbers, when a pair holds. */
 typedef struct mpm_bond {
     unsigned mark;          /* set by mpm_bond_default */
     mpm_bond_rule rule;

@@ -124,6 +124,7 @@ MPM_API void mpm_draw_line(mpm_draw_canvas *c, double ax, double ay, double bx, 
                            mpm_draw_color color);
 MPM_API void mpm_draw_disc(mpm_draw_canvas *c, double x, double y, double radius, mpm_draw_color color);
 
+/* Which part of a text stands at its x. */
 typedef enum mpm_draw_align { MPM_DRAW_LEFT = 0, MPM_DRAW_CENTER = 1, MPM_DRAW_RIGHT = 2 } mpm_draw_align;
 
 /* Text with its baseline at y, in a stroke font of our own: ASCII and the signs for micro, degree,
@@ -149,6 +150,7 @@ MPM_API mpm_draw_color mpm_draw_series_color(int number);
    Test: 41_draw "numbers". */
 MPM_API size_t mpm_draw_number(char *buffer, size_t n, double value, int digits);
 
+/* A mark on an axis and its text. */
 typedef struct mpm_draw_tick {
     double at;     /* in the units of the axis; of a logarithmic one the exponent */
     char text[32]; /* empty for a minor tick; "10^-3" for a power */
@@ -246,6 +248,7 @@ MPM_API mpm_draw_scatter_desc mpm_draw_scatter_desc_default(void);
 MPM_API mpm_status mpm_draw_scatter(mpm_draw_canvas *c, mpm_draw_rect where, const mpm_draw_scatter_desc *d,
                                     mpm_fault *fault);
 
+/* How a curve is drawn. */
 typedef enum mpm_draw_mark { MPM_DRAW_CURVE = 0, MPM_DRAW_DOTS = 1, MPM_DRAW_DASHED = 2 } mpm_draw_mark;
 
 /* One curve or set of dots; not-finite points break it. */
@@ -257,6 +260,7 @@ typedef struct mpm_draw_curve {
     int color;        /* number for mpm_draw_series_color */
 } mpm_draw_curve;
 
+/* Curves in one pair of axes. */
 typedef struct mpm_draw_plot_desc {
     unsigned mark;        /* set by mpm_draw_plot_desc_default */
     const mpm_draw_curve *curves;

@@ -168,6 +168,7 @@ typedef struct mpm_pull_desc {
    Test: 32_pull. */
 MPM_API mpm_pull_desc mpm_pull_desc_default(void);
 
+/* A pull under way, and what it has shown so far. */
 typedef struct mpm_pull {
     mpm_pull_desc desc;
     mpm_grip grip[2];          /* of the upper and of the lower body */

@@ -134,6 +134,7 @@ extern "C" {
     X(MPM_SPRAY_DEPOSIT_BOUNCE, "bounce", "never sticks")                                                        \
     X(MPM_SPRAY_DEPOSIT_IGNORE, "ignore", "passes through as if nothing were there")
 
+/* How fast particles part. */
 #define MPM_SPRAY_REBOUND_LIST(X)                                                                                \
     X(MPM_SPRAY_REBOUND_JOHNSON, "johnson", "restitution from the impact speed (B 18)")                          \
     X(MPM_SPRAY_REBOUND_CONSTANT, "constant", "one restitution for all contacts")
@@ -143,6 +144,7 @@ extern "C" {
     X(MPM_SPRAY_MIXING_DISPERSION, "dispersion", "2 sqrt(g1 g2) (the text below B 32)")                          \
     X(MPM_SPRAY_MIXING_DIFFERENCE, "difference", "(sqrt g1 - sqrt g2)^2 (B 31)")
 
+/* How particles that may meet are found. */
 #define MPM_SPRAY_SEARCH_LIST(X)                                                                                 \
     X(MPM_SPRAY_BINS, "bins", "neighbours from bins")                                                            \
     X(MPM_SPRAY_ALL_PAIRS, "all", "every pair: the reference the bins are tested against")
@@ -154,6 +156,7 @@ typedef enum mpm_spray_rebound { MPM_SPRAY_REBOUND_LIST(MPM_LIST_ENUM) MPM_SPRAY
 typedef enum mpm_spray_mixing { MPM_SPRAY_MIXING_LIST(MPM_LIST_ENUM) MPM_SPRAY_MIXINGS } mpm_spray_mixing;
 typedef enum mpm_spray_search { MPM_SPRAY_SEARCH_LIST(MPM_LIST_ENUM) MPM_SPRAY_SEARCHES } mpm_spray_search;
 
+/* What a solid is made of. */
 typedef struct mpm_spray_solid {
     mpm_real shear, bulk;     /* moduli [Pa], > 0 */
     mpm_real yield;           /* [Pa], > 0 */
@@ -169,6 +172,7 @@ typedef struct mpm_spray_plane {
     int target;            /* 1: particles may stick */
 } mpm_spray_plane;
 
+/* A particle to be added. */
 typedef struct mpm_spray_ball {
     mpm_real x[3], v[3], spin[3];  /* [m], [m/s], [rad/s] */
     mpm_real radius, density;      /* [m], [kg/m^3] */
@@ -191,6 +195,7 @@ typedef struct mpm_spray_touch {
     int stuck;                /* the outcome; not yet known (0) when a criterion is asked */
 } mpm_spray_touch;
 
+/* Functions of your own: the velocity u of the gas at a place; whether a particle sticks; what to note of a touch. */
 typedef void (*mpm_spray_gas_fn)(void *user, mpm_real time, const mpm_real x[3], mpm_real u[3]);
 typedef int (*mpm_spray_stick_fn)(void *user, const mpm_spray_touch *touch); /* 1: it sticks */
 typedef void (*mpm_spray_touch_fn)(void *user, const mpm_spray_touch *touch);
@@ -303,6 +308,7 @@ typedef struct mpm_spray_rows {
     int32_t *particle;   /* ... which they are */
 } mpm_spray_rows;
 
+/* A spray under way: its particles, its deposit, what was counted. */
 typedef struct mpm_spray {
     mpm_spray_desc desc;
     mpm_spray_jet jet;

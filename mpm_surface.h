@@ -127,7 +127,7 @@ typedef struct mpm_meet {
     mpm_real tension[3];  /* traction of adhesion on the marker now [stress] */
 } mpm_meet;
 
-#define MPM_SURFACE_NONE (-1000)
+#define MPM_SURFACE_NONE (-1000) /* no surface, no meeting */
 
 /* A massless point of a surface. */
 typedef struct mpm_marker {

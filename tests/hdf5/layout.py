@@ -1,6 +1,6 @@
 """layout.py - holds a file to VTKHDF 2.0, by h5py: python3 tests/hdf5/layout.py FILE.vtkhdf ...
-Every table of the steps has one entry a frame; they lie one behind the other without holes and end where the arrays end;
-offsets, types and connectivity of each frame are those of its cells. Of the files of 42_hdf5, every number is known.
+Every table of the steps has one entry a frame; they lie one behind the other without holes and end where the arrays
+end; offsets, types and connectivity of each frame are those of its cells. Of the files of 42_hdf5, every number is known.
 SPDX-License-Identifier: MIT"""
 import os
 import sys

@@ -2,8 +2,8 @@
     python3 tests/hdf5/readers.py FILE.vtkhdf ...
 VTK's vtkHDFReader: 9.3 and later step by step; before that it knows no steps and takes every frame for a part of one
 mesh, so the parts are read one by one. FILE.xmf beside it: vtkXdmfReader, which ParaView has and Debian's VTK has not.
-Each frame is compared with points_NNNN.vtu (or surface_NNNN.vtu) of the same folder, read by VTK's own XML reader; of the
-series of 42_hdf5, with the numbers known. SPDX-License-Identifier: MIT"""
+Each frame is compared with points_NNNN.vtu (or surface_NNNN.vtu) of the same folder, read by VTK's own XML reader; of
+the series of 42_hdf5, with the numbers known. SPDX-License-Identifier: MIT"""
 import os
 import sys
 
@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkVersion
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkIOHDF import vtkHDFReader
-from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader  # noqa: F401
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 try:
     from vtkmodules.vtkIOXdmf2 import vtkXdmfReader

@@ -1,6 +1,6 @@
 #!/bin/sh
-# make hdf5: builds mpm_hdf5.h with the HDF5 library and has its files read by readers that share nothing with it. What is
-# not installed is left out with a line that says so. Given: compiler, make, flags to compile with HDF5 and to link.
+# make hdf5: builds mpm_hdf5.h with the HDF5 library and has its files read by readers that share nothing with it. What
+# is not installed is left out with a line that says so. Given: compiler, make, flags to compile with HDF5 and to link.
 set -u
 cc=$1
 make=$2
@@ -89,7 +89,8 @@ rm -rf "$dir/impact" "$dir/surface" "$dir/many" "$dir/parts" "$dir/refused"
 check "an impact with --hdf5 4" build/impact_hdf5 $short --hdf5 4 --out "$dir/impact"
 check "contact on surfaces with --hdf5 0" build/impact_hdf5 --method surface --quiet --time 2 --frames 3 --hdf5 0 \
     --out "$dir/surface"
-check "several particles with --hdf5 9" build/many_particles_hdf5 $short --count 2 --spread 20 --hdf5 9 --out "$dir/many"
+check "several particles with --hdf5 9" build/many_particles_hdf5 $short --count 2 --spread 20 --hdf5 9 \
+    --out "$dir/many"
 runs="$dir/impact/impact.vtkhdf $dir/surface/impact.vtkhdf $dir/surface/surface.vtkhdf $dir/many/particles.vtkhdf"
 layout "runs" $runs
 readers "runs" $runs
@@ -112,5 +113,6 @@ refused() { # text of the message, command...: fails, says it, and makes no fold
 }
 check "--hdf5 10 is refused" refused "--hdf5 10: must be -1 .. 9" build/impact_hdf5 $short --hdf5 10
 check "--hdf5 fast is refused" refused "fast" build/impact_hdf5 $short --hdf5 fast
-[ -e build/hdf5.on ] || check "a program without HDF5 says how to build it" refused "make hdf5" build/impact $short --hdf5 1
+[ -e build/hdf5.on ] ||
+    check "a program without HDF5 says how to build it" refused "make hdf5" build/impact $short --hdf5 1
 check_end

@@ -39,7 +39,7 @@
        #define MPM_IMPLEMENTATION
        #include "mpm_hdf5.h"
        int main(void) {
-           mpm_real x[2] = {0, 1}, y[2] = {0, 0}, z[2] = {0, 1}, hot[2] = {300, 900};
+           static mpm_real x[2] = {0, 1}, y[2] = {0, 0}, z[2] = {0, 1}, hot[2] = {300, 900};
            mpm_hdf5_field field = mpm_hdf5_scalar("temperature (K)", hot, 1);
            mpm_hdf5_desc d = mpm_hdf5_desc_default();
            mpm_fault fault;

@@ -22,11 +22,12 @@ function html(text) {
 function linked(text, page,   done, name) {
     text = html(text)
     done = ""
-    while (match(text, /(mpm|MPM)_[A-Za-z0-9_]+|[0-9][0-9]_[a-z][a-z0-9_]*|docs\/[a-z_]+\.md/)) {
+    while (match(text, /(mpm|MPM)_[A-Za-z0-9_]+(\.h)?|[0-9][0-9]_[a-z][a-z0-9_]*|docs\/[a-z_]+\.md/)) {
         name = substr(text, RSTART, RLENGTH)
         done = done substr(text, 1, RSTART - 1)
         text = substr(text, RSTART + RLENGTH)
-        if (name in home)
+        if (name ~ /\.h$/ && there(name)) done = done "<a href=\"" name ".html\">" name "</a>"
+        else if (name in home)
             done = done "<a href=\"" (home[name] == page ? "" : home[name] ".html") "#" name "\">" name "</a>"
         else if (name ~ /^docs/) done = done "<a href=\"../../" name "\">" name "</a>"
         else if (name ~ /^[0-9]/ && there("tests/" name ".c"))

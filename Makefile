@@ -200,6 +200,13 @@ bench-against: ## the speed of the step beside REV=<tag or commit>: N=5 runs of 
 api: ## the reference of all public names, from the headers' comments: build/api/index.html
 	@sh packaging/api.sh build/api
 
+# The commands stand in the page, so that it shows what is run.
+gallery: build/impact build/taylor build/spray build/two_particles build/many_particles ## the pictures of docs/gallery.md again, by the commands there (a minute and a half)
+	@mkdir -p build/gallery
+	sed -n 's/^    //p' docs/gallery.md >build/gallery/commands.sh
+	sh -eux build/gallery/commands.sh
+	@sh tests/79_gallery.sh >build/gallery/checks || { grep '^not ok' build/gallery/checks; exit 1; }
+
 figures: ## the figures of docs/method.md
 	@mkdir -p build
 	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) docs/figures.c -o build/figures $(LDFLAGS) -lm

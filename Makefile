@@ -176,6 +176,7 @@ SECONDS ?= 20
 fuzz: ## random inputs for everything that reads or describes: SECONDS=20 for each target of tests/fuzz
 	@CC="$(CC)" sh tests/fuzz/run.sh $(SECONDS) $(JOBS)
 
+.PHONY: hdf5
 hdf5: ## builds build/impact_hdf5 and many_particles_hdf5, which know --hdf5, and has their files read by h5py, VTK, ParaView
 	@sh tests/hdf5/run.sh "$(CC)" "$(MAKE)" "$(WITH_HDF5)" "$(HDF5_LIBS)"
 
@@ -197,10 +198,12 @@ N ?= 5
 bench-against: ## the speed of the step beside REV=<tag or commit>: N=5 runs of each in turns, ratio of medians
 	@sh bench/against.sh $(or $(REV),$(error REV=<tag or commit>)) $(N) "$(CC)" $(CFLAGS)
 
+.PHONY: api
 api: ## the reference of all public names, from the headers' comments: build/api/index.html
 	@sh packaging/api.sh build/api
 
 # The commands stand in the page, so that it shows what is run.
+.PHONY: gallery
 gallery: build/impact build/taylor build/spray build/two_particles build/many_particles ## the pictures of docs/gallery.md again, by the commands there (a minute and a half)
 	@mkdir -p build/gallery
 	sed -n 's/^    //p' docs/gallery.md >build/gallery/commands.sh

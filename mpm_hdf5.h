@@ -13,7 +13,8 @@
    WHAT IT DOES NOT DO
      It writes from one process only. It reads no more of a file than it needs to go on with it. It never prints (the
      HDF5 library is told to keep quiet while it works here), never exits, and keeps no state between calls: the file
-     is closed after every frame, so that others may look at it while the run goes on.
+     is closed after every frame, so that others may look at it while the run goes on. A reader that keeps it open
+     does not stop the run (from HDF5 1.10.7 and 1.12.1 on), but must open it again to see more.
 
    WHAT IS IN THE FILE
      The layout that VTK calls VTKHDF, version 2.0: an UnstructuredGrid with steps, which VTK 9.3 and ParaView 5.12
@@ -459,12 +460,16 @@ typedef struct mpm__hdf5_file {
     hid_t file, root, points, steps, offsets; /* groups VTKHDF, PointData, Steps, PointDataOffsets */
 } mpm__hdf5_file;
 
-/* How a file is opened: in the format of HDF5 1.10, which has SWMR; without waiting long for what is not there. */
+/* How a file is opened: in the format of HDF5 1.10, which has SWMR; without waiting long for what is not there; also
+   while a reader has it open, whose lock would end the run (HDF5 1.10.7, 1.12.1 and later can be told so). */
 static inline hid_t mpm__hdf5_access(void)
 {
     const hid_t how = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_libver_bounds(how, H5F_LIBVER_V110, H5F_LIBVER_LATEST);
     H5Pset_metadata_read_attempts(how, 10);
+#if (H5_VERS_MAJOR == 1 && H5_VERS_MINOR == 10 && H5_VERS_RELEASE >= 7) || H5_VERSION_GE(1, 12, 1)
+    H5Pset_file_locking(how, 0, 1);
+#endif
     return how;
 }
 

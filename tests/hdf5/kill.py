@@ -75,5 +75,10 @@ done = subprocess.run([append, path, str(frame), str(frame + 2)], stdout=subproc
 check("then it goes on to its end", done.returncode == 0)
 with h5py.File(path, "r") as f:
     check("... and the file is one that any reader opens", frames_in(f, frame + 2) == frame + 2)
+with h5py.File(path, "r"):  # someone looks at it meanwhile
+    done = subprocess.run([append, path, str(frame + 2), str(frame + 5)], stdout=subprocess.PIPE)
+    check("a reader that has it open does not stop the process", done.returncode == 0)
+with h5py.File(path, "r") as f:
+    check("... and opened again it shows the new frames", frames_in(f, frame + 5) == frame + 5)
 check("no .part is left", not os.path.exists(path + ".part"))
 sys.exit(series.end())

@@ -9,6 +9,8 @@ libs=$4
 dir=build/tests/hdf5
 mkdir -p "$dir"
 . tests/check.sh
+PYTHONDONTWRITEBYTECODE=1
+export PYTHONDONTWRITEBYTECODE
 if [ -z "$libs" ]; then
     echo "skip - the HDF5 library is not installed, or not known to pkg-config (Debian: libhdf5-dev, pkg-config)"
     exit 0

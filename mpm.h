@@ -50,7 +50,9 @@
      MPM_COMPILED         GLOBAL  mpm.c is compiled and linked in: MPM_IMPLEMENTATION is ignored, so that a
                                   program of one file is compiled faster, without a change.
      MPM_MALLOC(n), MPM_FREE(p)  IMPL  used only where the caller passes NULL for memory.
-     MPM_BLOCK            IMPL    points per constitutive block (default 64).
+     MPM_BLOCK            IMPL    points per constitutive block (default 64), and most points that a sweep or a
+                                  material treats together. 8 is right for small machines: the same bits, some
+                                  thirds slower, a stack of a few KiB instead of 28.
      MPM_NO_INLINE        IMPL    the kernels are not inlined by force: slower, but quick to compile.
      MPM_FINITE_MATH      GLOBAL  compile in spite of -ffinite-math-only, which -ffast-math and -Ofast
                                   bring: values that are not numbers then go unnoticed.
@@ -76,7 +78,7 @@
      touch        what a slot carries besides where bodies meet, or meet a wall.
      base         the lowest node that a point touches.
      run          consecutive points of a body with the same base; they share their nodes.
-     piece, lane  up to 32 points of a run, swept together; a lane is one of them.
+     piece, lane  up to 32 points of a run (or MPM_BLOCK), swept together; a lane is one of them.
      block        up to MPM_BLOCK points of a body handed to its material.
      mirror       a symmetry plane: nodes behind it are images of those before it.
      ghost        with GIMP and splines, the layer of nodes around the grid that points near its sides reach.
@@ -209,13 +211,14 @@ extern "C" {
     X(MPM_ERR_VERSION, -10, "a file is of another version, real type or description")   \
     X(MPM_CLAMPED, 1, "a value was limited to its valid range")                         \
     X(MPM_NOT_CONVERGED, 2, "an iteration reached its limit; the last value is usable") \
-    X(MPM_RETIRED, 3, "points left the grid and were retired")
+    X(MPM_RETIRED, 3, "points left the grid and were retired")                          \
+    X(MPM_UNSTABLE, 4, "the step is longer than the fastest wave takes through a cell")
 
 typedef enum mpm_status {
 #define MPM__STATUS_ENUM(name, number, text) name = number,
     MPM_STATUS_LIST(MPM__STATUS_ENUM)
 #undef MPM__STATUS_ENUM
-    MPM_STATUS_LAST = 4
+    MPM_STATUS_LAST = 5
 } mpm_status;
 
 /* The first thing that went wrong, so that a message can name it. `field` is a text that stays. */
@@ -294,6 +297,17 @@ static inline void *mpm_carve(char *base, size_t *used, size_t n, size_t size)
     size_t at = mpm_size_add(*used, MPM_ALIGN - 1) / MPM_ALIGN * MPM_ALIGN;
     *used = mpm_size_add(at, mpm_size_mul(n, size));
     return base ? base + at : NULL;
+}
+
+/* 0 if memory begins where any of our arrays may, at a multiple of what numbers, counters and pointers ask for, as
+   malloc's does; else how many bytes beside. Test: 21_world. */
+struct mpm_widest {
+    char byte;
+    union { double real; int64_t count; void *pointer; } value;
+};
+static inline int mpm_unaligned(const void *memory)
+{
+    return (int)((uintptr_t)memory % offsetof(struct mpm_widest, value));
 }
 
 /* Copies text to the end of buffer[n], which holds `used` characters, cut to fit and always terminated when n > 0.
@@ -730,7 +744,7 @@ typedef struct mpm_world {
     mpm_fault fault;         /* the last failure */
     int64_t retired;         /* points that left the grid */
     int64_t sorts;           /* times the points were put back in cell order */
-    int64_t notices;         /* positive statuses returned by materials */
+    int64_t notices;         /* positive statuses returned by materials; and MPM_UNSTABLE */
     int64_t tally[MPM_TALLIES]; /* counters of laws */
     int64_t held;            /* pairs that were held in the last step */
     int32_t next_id;         /* of the next point made */
@@ -779,9 +793,10 @@ MPM_API mpm_status mpm_contact_check(const mpm_contact *c, mpm_fault *fault);
 /* Bytes that mpm_init needs for d; 0 if d is invalid or the size overflows. Test: 21_world. */
 MPM_API size_t mpm_bytes(const mpm_desc *d);
 
-/* Prepares a world in caller's memory (kept until the end; aligned as malloc aligns), or with
+/* Prepares a world in caller's memory (kept until the end; aligned as malloc aligns, see mpm_unaligned), or with
    memory == NULL in memory from MPM_MALLOC, which then grows by itself: in mpm_body_add and its like, and where
-   mpm_locate finds more nodes than there is room for. MPM_ERR_ARGUMENT / NAN (see w->fault), MPM_ERR_MEMORY.
+   mpm_locate finds more nodes than there is room for. MPM_ERR_ARGUMENT / NAN (see w->fault; value: how many bytes
+   beside the alignment the memory begins), MPM_ERR_MEMORY.
    Test: 21_world. */
 MPM_API mpm_status mpm_init(mpm_world *w, const mpm_desc *d, void *memory, size_t bytes);
 
@@ -824,7 +839,8 @@ MPM_API int mpm_field_take(mpm_world *w, const char *name);
 
 /* Makes room after MPM_ERR_FULL in caller's memory: at least doubles nodes, runs and pairs, in the caller's block
    (used instead of the old one, which is then free) or with NULL in memory from MPM_MALLOC. The
-   points are untouched; repeat the step from mpm_locate. MPM_ERR_MEMORY. Test: 21_world. */
+   points are untouched; repeat the step from mpm_locate. MPM_ERR_MEMORY; MPM_ERR_ARGUMENT: not aligned.
+   Test: 21_world. */
 MPM_API mpm_status mpm_reserve(mpm_world *w, void *memory, size_t bytes);
 MPM_API size_t mpm_reserve_bytes(const mpm_world *w); /* bytes that mpm_reserve wants */
 
@@ -833,20 +849,24 @@ MPM_API size_t mpm_reserve_bytes(const mpm_world *w); /* bytes that mpm_reserve 
 MPM_API mpm_real mpm_wave_speed_p(mpm_real young, mpm_real poisson, mpm_real density);
 MPM_API mpm_real mpm_wave_speed_s(mpm_real young, mpm_real poisson, mpm_real density);
 
-/* factor * cell / the fastest wave of any body (A 3.37); 0 without one. Test: 21_world. */
+/* factor * cell / the fastest wave of any body (A 3.37). 0, which mpm_step refuses, where no body has a wave speed or one
+   with a stress law has none (wave_p 0): how fast its waves are is then not known. Test: 21_world. */
 MPM_API mpm_real mpm_time_step(const mpm_world *w, mpm_real factor);
 
 /* ---- the step, phase by phase -------------------------------------------------------------- */
 
 /* One step of dt [time] > 0: the phases below in their order. Write your own loop to put something
-   between them. Returns MPM_OK, MPM_RETIRED; an error of mpm_locate (MPM_ERR_FULL, MEMORY, NAN, of a position),
+   between them. Returns MPM_OK, MPM_RETIRED, MPM_UNSTABLE; an error of mpm_locate (MPM_ERR_ARGUMENT, FULL, MEMORY, NAN),
    before the step began; or an error of mpm_stress, with the step incomplete. Test: 20_method, 71_step. */
 MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt);
 
 /* Finds each point's base node, retires points outside the grid, restores cell order when it has
    decayed, and gives every body slots for the nodes its points touch. The step dt is kept in w->dt for all that
-   follows. MPM_ERR_ARGUMENT / NAN: dt, which must be > 0; position of point fault.index. MPM_ERR_FULL in
+   follows. MPM_ERR_ARGUMENT / NAN: dt, which must be > 0: nothing has changed then (where it is 0 since mpm_time_step
+   knew no wave speed, fault.index is the body); position of point fault.index. MPM_ERR_FULL in
    caller's memory: see mpm_reserve; MPM_ERR_MEMORY. Points beyond a closed side are put back on it, others stay.
+   MPM_UNSTABLE, once, as the step grows longer than cell / the fastest wave known, which no explicit step stands for
+   long: it is taken, and counted in w->notices. (MPM_RETIRED may be hidden by it; see w->retired.)
    Test: 21_world, 28_planes. */
 MPM_API mpm_status mpm_locate(mpm_world *w, mpm_real dt);
 
@@ -1036,9 +1056,11 @@ MPM_API const char *mpm_version(void);
 
 #ifndef MPM_BLOCK
 #define MPM_BLOCK 64
+#elif MPM_BLOCK < 1
+#error "MPM_BLOCK is a number of points: at least 1"
 #endif
 
-#define MPM__LANES 32   /* points of a run treated together */
+#define MPM__LANES (MPM_BLOCK < 32 ? MPM_BLOCK : 32) /* points of a run treated together */
 #ifdef MPM_FLOAT
 #define MPM__HAIR MPM_R(1e-5) /* cells; see mpm__weights_axis */
 #else
@@ -3562,12 +3584,49 @@ static inline mpm_status mpm__locate(mpm_world *w)
     return w->retired > retired ? MPM_RETIRED : MPM_OK;
 }
 
+/* The first body with a stress law and without a wave speed, or -1. */
+static inline int32_t mpm__without_wave(const mpm_world *w)
+{
+    int32_t b;
+    for (b = 0; b < w->bodies; b++)
+        if (w->body[b].desc.stress && !(w->body[b].desc.wave_p > 0)) return b;
+    return -1;
+}
+
+static inline mpm_real mpm__fastest_wave(const mpm_world *w)
+{
+    mpm_real c = 0;
+    int32_t b;
+    for (b = 0; b < w->bodies; b++)
+        if (w->body[b].desc.wave_p > c) c = w->body[b].desc.wave_p;
+    return c;
+}
+
+MPM_API mpm_real mpm_time_step(const mpm_world *w, mpm_real factor)
+{
+    const mpm_real c = mpm__fastest_wave(w);
+    return c > 0 && mpm__without_wave(w) < 0 ? factor * w->desc.cell / c : 0;
+}
+
+/* Whether dt is one. Of 0 it says where that may come from. */
+static inline mpm_status mpm__dt_check(mpm_world *w, mpm_real dt)
+{
+    const int32_t body = mpm__without_wave(w);
+    if (dt <= 0 && dt >= 0 && body >= 0)
+        return mpm_fail(&w->fault, MPM_ERR_ARGUMENT, "dt (mpm_time_step: no wave_p of body)", dt, body);
+    return mpm_want(dt > 0, &w->fault, "dt", dt, -1);
+}
+
 MPM_API mpm_status mpm_locate(mpm_world *w, mpm_real dt)
 {
-    mpm_status s = mpm_want(dt > 0, &w->fault, "dt", dt, -1);
+    const mpm_real c = mpm__fastest_wave(w), most = c > 0 ? w->desc.cell / c : 0;
+    mpm_status s = mpm__dt_check(w, dt);
     if (s != MPM_OK) return s;
     w->dt = dt;
-    return mpm__locate(w);
+    s = mpm__locate(w);
+    if (s < 0 || !(c > 0) || dt <= most || w->dt_last > most) return s;
+    w->notices++;
+    return MPM_UNSTABLE;
 }
 
 /* ---- looking at it --------------------------------------------------------------------------- */
@@ -3887,6 +3946,12 @@ MPM_API size_t mpm_bytes(const mpm_desc *d)
 
 MPM_API size_t mpm_bytes_used(const mpm_world *w) { return w->memory_bytes + w->work_bytes; }
 
+/* Whether memory of the caller's is aligned; NULL is none. */
+static inline mpm_status mpm__memory_check(mpm_fault *f, const void *memory)
+{
+    return mpm_want(!mpm_unaligned(memory), f, "memory (not aligned)", (mpm_real)mpm_unaligned(memory), -1);
+}
+
 /* The two blocks, from the caller's memory or from MPM_MALLOC. */
 static inline int mpm__take_memory(mpm_world *w, void *memory, size_t points, size_t work)
 {
@@ -3916,7 +3981,7 @@ MPM_API mpm_status mpm_init(mpm_world *w, const mpm_desc *d, void *memory, size_
     mpm_status s;
     memset(w, 0, sizeof *w);
     w->fault.index = -1;
-    if ((s = mpm_desc_check(d, &w->fault)) != MPM_OK) return s;
+    if ((s = mpm_desc_check(d, &w->fault)) != MPM_OK || (s = mpm__memory_check(&w->fault, memory)) != MPM_OK) return s;
     mpm__describe(w, d);
     points = mpm__points_bytes(w);
     work = mpm__layout_work(w, NULL, mpm__guess_nodes(d));
@@ -3957,7 +4022,10 @@ MPM_API mpm_status mpm_reserve(mpm_world *w, void *memory, size_t bytes)
 {
     const int32_t nodes = mpm__grown(w);
     size_t need = mpm_reserve_bytes(w);
-    void *block = memory ? memory : MPM_MALLOC(need);
+    void *block;
+    mpm_status s = mpm__memory_check(&w->fault, memory);
+    if (s != MPM_OK) return s;
+    block = memory ? memory : MPM_MALLOC(need);
     if (!block || (memory && bytes < need))
         return mpm_fail(&w->fault, MPM_ERR_MEMORY, "bytes", (mpm_real)need, -1);
     mpm__grid_reset(w);
@@ -4832,15 +4900,6 @@ MPM_API mpm_status mpm_point_take(mpm_world *w, int32_t i)
     mpm__close_place(w, b, i);
     mpm__masses(w, &w->body[b]);
     return MPM_OK;
-}
-
-MPM_API mpm_real mpm_time_step(const mpm_world *w, mpm_real factor)
-{
-    mpm_real c = 0;
-    int32_t b;
-    for (b = 0; b < w->bodies; b++)
-        if (w->body[b].desc.wave_p > c) c = w->body[b].desc.wave_p;
-    return c > 0 ? factor * w->desc.cell / c : 0;
 }
 
 /* ---- describing a problem ------------------------------------------------------------------ */

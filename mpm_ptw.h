@@ -586,8 +586,9 @@ typedef struct mpm__ptw_shared {
     mpm_real rate_factor;    /* gamma/2 (4 pi/(3 M))^(1/3) rho0^(-1/6): gamma xidot per sqrt(mu); 1 without PTW */
 } mpm__ptw_shared;
 
-/* Points are worked on in groups of this many, as plain arrays on the stack. */
-enum { MPM__PTW_LANES = 64 };
+/* Points are worked on in groups of this many, as plain arrays on the stack: MPM_BLOCK of them, but no fewer than the
+   knots below, nor more than the caches like. */
+enum { MPM__PTW_LANES = MPM_BLOCK < 8 ? 8 : MPM_BLOCK < 64 ? MPM_BLOCK : 64 };
 
 /* What is known of a point whose flow stress is sought, and how far the search for its increment is. */
 #define MPM__PTW_LANE_LIST(X)                                                                    \

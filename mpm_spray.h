@@ -369,7 +369,7 @@ MPM_API mpm_status mpm_spray_check(const mpm_spray_desc *d, mpm_fault *fault);
 /* Bytes that mpm_spray_init needs; 0 if d is invalid or the size overflows. Test: 51_spray_input. */
 MPM_API size_t mpm_spray_bytes(const mpm_spray_desc *d);
 
-/* Prepares a spray in the caller's memory (kept until the end, aligned as malloc aligns), or with
+/* Prepares a spray in the caller's memory (kept until the end, aligned as malloc aligns: others are refused), or with
    NULL in memory from MPM_MALLOC. MPM_ERR_ARGUMENT / NAN (see s->fault), MPM_ERR_MEMORY.
    Test: 51_spray_input, 52_spray_flow. */
 MPM_API mpm_status mpm_spray_init(mpm_spray *s, const mpm_spray_desc *d, void *memory, size_t bytes);
@@ -1334,6 +1334,9 @@ MPM_API mpm_status mpm_spray_init(mpm_spray *s, const mpm_spray_desc *d, void *m
     if ((status = mpm_spray_check(d, &s->fault)) != MPM_OK) return status;
     s->desc = *d;
     need = mpm__spray_layout(s, NULL);
+    if ((status = mpm_want(!mpm_unaligned(memory), &s->fault, "memory (not aligned)", (mpm_real)mpm_unaligned(memory),
+                           -1)) != MPM_OK)
+        return status;
     if (need == (size_t)-1 || (memory && bytes < need))
         return mpm_fail(&s->fault, MPM_ERR_MEMORY, memory ? "bytes" : "capacity",
                                memory ? (mpm_real)bytes : (mpm_real)d->capacity, -1);

@@ -171,6 +171,9 @@ POSITIONS ?= 4
 predict: build/impact build/critical_velocity ## contact on surfaces, whatever the grid, whatever the size: an hour and a half of CPU, resumable; POSITIONS=4
 	sh examples/studies/prediction.sh $(POSITIONS) $(JOBS)
 
+embedded: ## an impact on a Cortex-M4, 128 KiB of flash, 256 KiB of RAM, under qemu (half a minute), beside the one here
+	@sh examples/embedded/run.sh "$(CC)"
+
 # fuzz needs clang with libFuzzer; hard takes what it finds of tools and skips the others. CHECKS="gcc kill": these only.
 SECONDS ?= 20
 fuzz: ## random inputs for everything that reads or describes: SECONDS=20 for each target of tests/fuzz
@@ -266,4 +269,4 @@ dist: build/mpm_all.h ## a release: build/mpm-VERSION.tar.gz, and build/mpm_all.
 clean: ## removes build/
 	rm -rf build
 
-.PHONY: all help run web live-test predict test fuzz hard coverage verify impacts reproduction spray-study bench bench-against footprint figures install uninstall dist clean
+.PHONY: all help run web live-test predict test embedded fuzz hard coverage verify impacts reproduction spray-study bench bench-against footprint figures install uninstall dist clean

@@ -849,15 +849,15 @@ MPM_API size_t mpm_reserve_bytes(const mpm_world *w); /* bytes that mpm_reserve 
 MPM_API mpm_real mpm_wave_speed_p(mpm_real young, mpm_real poisson, mpm_real density);
 MPM_API mpm_real mpm_wave_speed_s(mpm_real young, mpm_real poisson, mpm_real density);
 
-/* factor * cell / the fastest wave of any body (A 3.37). 0, which mpm_step refuses, where no body has a wave speed or one
-   with a stress law has none (wave_p 0): how fast its waves are is then not known. Test: 21_world. */
+/* factor * cell / the fastest wave of any body (A 3.37). 0, which mpm_step refuses, where no body has a wave speed or
+   one with a stress law has none (wave_p 0): how fast its waves are is then not known. Test: 21_world. */
 MPM_API mpm_real mpm_time_step(const mpm_world *w, mpm_real factor);
 
 /* ---- the step, phase by phase -------------------------------------------------------------- */
 
 /* One step of dt [time] > 0: the phases below in their order. Write your own loop to put something
-   between them. Returns MPM_OK, MPM_RETIRED, MPM_UNSTABLE; an error of mpm_locate (MPM_ERR_ARGUMENT, FULL, MEMORY, NAN),
-   before the step began; or an error of mpm_stress, with the step incomplete. Test: 20_method, 71_step. */
+   between them. Returns MPM_OK, MPM_RETIRED, MPM_UNSTABLE; an error of mpm_locate (MPM_ERR_ARGUMENT, FULL, MEMORY,
+   NAN), before the step began; or an error of mpm_stress, with the step incomplete. Test: 20_method, 71_step. */
 MPM_API mpm_status mpm_step(mpm_world *w, mpm_real dt);
 
 /* Finds each point's base node, retires points outside the grid, restores cell order when it has

@@ -469,6 +469,113 @@ static void one_body(void)
     free(block);
 }
 
+/* Memory that begins beside a number's place is refused, by how much; as aligned as malloc's it is taken. */
+static void unaligned(void)
+{
+    const mpm_desc d = scene_grid(1, 4, 4, 4, 0, 0, 0);
+    const size_t bytes = mpm_bytes(&d), more = 64;
+    char *block = (char *)malloc(bytes + more);
+    mpm_world w;
+    CHECK_EQUAL("memory of malloc is aligned", mpm_unaligned(block), 0);
+    CHECK_EQUAL("... one byte on it is one beside", mpm_unaligned(block + 1), 1);
+    CHECK_EQUAL("memory that is not aligned", mpm_init(&w, &d, block + 1, bytes), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... is named", !strcmp(w.fault.field, "memory (not aligned)"));
+    CHECK_EQUAL("... with the bytes it is beside", w.fault.value, 1);
+    CHECK_TRUE("... and nothing is taken", !w.memory && !w.owns_memory);
+    CHECK_EQUAL("aligned memory is taken", mpm_init(&w, &d, block, bytes), MPM_OK);
+    CHECK_EQUAL("more of it that is not aligned", mpm_reserve(&w, block + 1, bytes), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... leaves what there was", w.work == block + w.memory_bytes && w.work_bytes > 0);
+    mpm_free(&w);
+    free(block);
+}
+
+/* A moving block of a metal in the middle of a grid, and room for one more. */
+static void moving_block(mpm_world *w, mpm_material *m, mpm_body_desc *b)
+{
+    const mpm_desc d = scene_grid(1, 10, 10, 10, 0, 0, 0);
+    *m = scene_metal(1, mpm_units_um_us_ng());
+    *b = scene_body(m, mpm_box(2, 2, 2, 4, 4, 4), 0.5, 100);
+    mpm_init(w, &d, NULL, 0);
+    mpm_body_add(w, b);
+}
+
+/* A step that is none is refused before anything changes: the world is the same to the last byte, but for the fault. */
+static void no_step(void)
+{
+    const mpm_real none = (mpm_real)strtod("nan", NULL), endless = (mpm_real)HUGE_VAL;
+    const mpm_real bad[] = {0, MPM_R(-1e-5), none, endless, -endless};
+    mpm_world w, before;
+    mpm_material m;
+    mpm_body_desc b;
+    size_t k;
+    char *memory;
+    moving_block(&w, &m, &b);
+    mpm_step(&w, MPM_R(1e-5));
+    memory = (char *)malloc(w.memory_bytes);
+    memcpy(memory, w.memory, w.memory_bytes);
+    before = w;
+    for (k = 0; k < sizeof bad / sizeof *bad; k++) {
+        CHECK_EQUAL("a step that is none", mpm_step(&w, bad[k]), k < 2 ? MPM_ERR_ARGUMENT : MPM_ERR_NAN);
+        CHECK_TRUE("... is named", !strcmp(w.fault.field, "dt"));
+        w.fault = before.fault;
+        CHECK_EQUAL("... and the world as it was", memcmp(&w, &before, sizeof w), 0);
+        CHECK_EQUAL("... with its points and nodes", memcmp(w.memory, memory, w.memory_bytes), 0);
+    }
+    free(memory);
+    mpm_free(&w);
+}
+
+/* The step by the fastest wave: of no body, of bodies with one; where one with a law tells none there is no step, and
+   mpm_step says of which body. */
+static void unknown_wave(void)
+{
+    mpm_world w;
+    mpm_material m;
+    mpm_body_desc b;
+    moving_block(&w, &m, &b);
+    CHECK_RELATIVE("time step: cell over the wave speed", mpm_time_step(&w, MPM_R(0.5)), 0.5 / (double)b.wave_p,
+                   8 * eps);
+    b.shape = mpm_box(6, 6, 6, 8, 8, 8);
+    b.stress = NULL;
+    b.wave_p = 0;
+    mpm_body_add(&w, &b);
+    CHECK_TRUE("... a body without stress needs no wave", mpm_time_step(&w, MPM_R(0.5)) > 0);
+    b.shape = mpm_box(6, 6, 2, 8, 8, 4);
+    b.stress = mpm_material_stress;
+    mpm_body_add(&w, &b);
+    CHECK_EQUAL("... of a law without one nothing is known", mpm_time_step(&w, MPM_R(0.5)), 0);
+    CHECK_EQUAL("... which is no step", mpm_step(&w, mpm_time_step(&w, MPM_R(0.5))), MPM_ERR_ARGUMENT);
+    CHECK_EQUAL("... the fault names the body", w.fault.index, 2);
+    CHECK_TRUE("... and what it lacks", strstr(w.fault.field, "wave_p") != NULL);
+    CHECK_EQUAL("... a step of one's own is taken", mpm_step(&w, MPM_R(1e-5)), MPM_OK);
+    w.bodies = 0;
+    CHECK_EQUAL("... 0 without bodies", mpm_time_step(&w, 1), 0);
+    mpm_free(&w);
+}
+
+/* A step longer than a wave takes through a cell is noted as it begins, not again and again. */
+static void unstable(void)
+{
+    mpm_real most;
+    mpm_world w;
+    mpm_material m;
+    mpm_body_desc b;
+    moving_block(&w, &m, &b);
+    most = mpm_time_step(&w, 1);
+    CHECK_EQUAL("as long as a wave takes: no notice", mpm_step(&w, most), MPM_OK);
+    CHECK_EQUAL("a hair longer: a notice", mpm_step(&w, most * (1 + 8 * MPM_EPSILON)), MPM_UNSTABLE);
+    CHECK_EQUAL("... counted", w.notices, 1);
+    CHECK_EQUAL("... and the step is taken", w.steps, 2);
+    CHECK_EQUAL("... not noted again", mpm_step(&w, 2 * most), MPM_OK);
+    CHECK_EQUAL("a stable one between", mpm_step(&w, most / 2), MPM_OK);
+    CHECK_EQUAL("... and it is", mpm_step(&w, 2 * most), MPM_UNSTABLE);
+    CHECK_EQUAL("... counted too", w.notices, 2);
+    w.body[0].desc.wave_p = 0;
+    mpm_step(&w, most / 2);
+    CHECK_EQUAL("where no wave is known, nothing is too long", mpm_step(&w, 2 * most), MPM_OK);
+    mpm_free(&w);
+}
+
 int main(void)
 {
     CHECK_TRUE("the version", !strcmp(mpm_version(), MPM_VERSION));
@@ -484,5 +591,9 @@ int main(void)
     laws_fail();
     flattened();
     one_body();
+    unaligned();
+    no_step();
+    unknown_wave();
+    unstable();
     return check_end();
 }

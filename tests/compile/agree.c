@@ -21,7 +21,7 @@ int main(void)
     if (mpm_init(&w, &d, NULL, 0) != MPM_OK || mpm_body_add(&w, &ball) != MPM_OK || mpm_body_add(&w, &slab) != MPM_OK)
         return 1;
     for (n = 0; n < 600; n++)
-        if (scene_step(&w, &bond, 8e-6) < 0) return 1;
+        if (scene_step(&w, &bond, MPM_R(8e-6)) < 0) return 1;
     t = mpm_body_totals(&w, -1);
     printf("%.17g\n%.17g\n%.17g\n%.17g\n%.17g\n", t.kinetic, t.internal, t.momentum[2], t.plastic_strain_mean,
            mpm_bond_measure_body(&w, -1).abp);

@@ -8,7 +8,7 @@ flags="-std=c99 -ffp-contract=off -DMPM_NO_INLINE -I. -Iexamples -Iexamples/stud
 strict="-std=c99 -pedantic -Wall -Wextra -Wconversion -Wshadow -Werror -DMPM_NO_INLINE -I."
 impact="$dir/impact --quiet --time 1 --spacing 0.75"
 all="allocations stdout full readonly nofolder kill address memory threads valgrind analyzer cppcheck tidy
-gcc clang tcc musl m32 mingw s390x armhf bare"
+gcc clang tcc musl m32 mingw s390x armhf bare board"
 . tests/check.sh
 
 # ---- one check -------------------------------------------------------------------------------
@@ -90,7 +90,8 @@ tidy_without() { # what it is not asked, and why: each a comma, a minus and the 
     sed 's/#.*//; s/ //g; /^$/d; s/^/,-/' tests/hard/tidy.txt | tr -d '\n'
 }
 
-# ---- compilers: the library in double and float; an impact whose numbers are the first compiler's; the tests of files
+# ---- compilers: the library in double and float; an impact whose numbers are those recorded in agree.golden; elastic
+# ---- bodies whose every bit is that recorded in 70_bits.c, in double and float; the tests of files
 builds() { # options, compiler...
     options=$1
     shift
@@ -102,8 +103,16 @@ runs() { # how to run a program ("": as it is), compiler...
     limited "$@" $flags -O1 tests/compile/agree.c -o $dir/$check.agree -lm &&
         limited "$@" $flags -O1 tests/40_io.c -o $dir/$check.io -lm || return 1
     [ "$how" = none ] && return
-    numbers $dir/$check.numbers limited $how $dir/$check.agree && agree $dir/first.numbers $dir/$check.numbers &&
-        in_folder timeout 1500 nice $how $here/$check.io
+    numbers $dir/$check.numbers limited $how $dir/$check.agree && agree tests/compile/agree.golden $dir/$check.numbers &&
+        golden_bits "$how" "$@" && in_folder timeout 1500 nice $how $here/$check.io
+}
+golden_bits() { # how to run a program, compiler...
+    how=$1
+    shift
+    for real in "" -DMPM_FLOAT; do
+        limited "$@" $flags $real -O1 tests/70_bits.c -o $dir/$check.bits -lm && limited $how $dir/$check.bits elastic ||
+            return 1
+    done
 }
 both() { # options, how to run, compiler...
     options=$1 how=$2
@@ -144,6 +153,10 @@ check_bare() { # its enums are unsigned bytes: that they are not negative is the
     try "compiler arm-none-eabi" arm-none-eabi-gcc builds "$strict -Wno-type-limits -mcpu=cortex-m7 -mthumb" \
         arm-none-eabi-gcc
 }
+check_board() { # it says itself how it went
+    line "Cortex-M4, 128 KiB flash, 256 KiB RAM" "$(limited sh examples/embedded/run.sh cc 2>&1 | tail -n 1)" \
+        "$(version qemu-system-arm)"
+}
 
 # ---- sanitizers: tests of the step, of files, pictures and sprays
 sanitized() { # options
@@ -183,7 +196,6 @@ shift 2
 mkdir -p $dir
 rm -f $dir/*.line
 cc $flags -O1 examples/impact.c -o $dir/impact -lm || exit 1
-gcc $flags -O1 tests/compile/agree.c -o $dir/first -lm && numbers $dir/first.numbers $dir/first || exit 1
 echo "$@" | tr ' ' '\n' | xargs -P "$jobs" -n 1 sh "$0" --one "$kills"
 for check in "$@"; do
     [ -f "$dir/$check.line" ] || line "$check" "found: it did not come to its end"

@@ -1,5 +1,5 @@
-/* impact - a cold spray impact on a microcontroller: float, a static array for memory, no malloc, no files, one hook for
-   text (board.h). An aluminium ball of 14 um hits aluminium at 810 m/s and stays; rings about its axis, 1268 points.
+/* impact - a cold spray impact on a microcontroller: float, a static array for memory, no malloc, no files, one hook
+   for text (board.h). An aluminium ball of 14 um hits aluminium at 810 m/s and stays; rings about its axis, 1268 points.
    `make embedded` builds it for a Cortex-M4 with 128 KiB of flash and 256 KiB of RAM and for the machine at hand, runs
    both, the first under qemu-system-arm, and holds one to the other: their numbers are the same to 1e-4.
    What makes it small: MPM_FLOAT (memory), MPM_BLOCK 8 (stack), MPM_NO_INLINE, MPM_STATIC and -Os (code), a description

@@ -17,12 +17,14 @@ $dir/desktop >$dir/desktop.out || found "it does not run here: $(tail -n 1 $dir/
 for tool in arm-none-eabi-gcc qemu-system-arm; do
     command -v $tool >/dev/null || skip "$tool is not installed"
 done
-echo 'int main(void) { return 0; }' | arm-none-eabi-gcc --specs=nano.specs --specs=nosys.specs -x c - -o $dir/probe.elf \
-    2>/dev/null || skip "arm-none-eabi-gcc has no newlib"
+echo 'int main(void) { return 0; }' |
+    arm-none-eabi-gcc --specs=nano.specs --specs=nosys.specs -x c - -o $dir/probe.elf 2>/dev/null || skip "arm-none-eabi-gcc has no newlib"
 arm-none-eabi-gcc "$@" -Os -mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -ffunction-sections \
     -fdata-sections -fno-inline-functions-called-once -Wl,--gc-sections --specs=nano.specs -nostartfiles \
-    -T $code/board.ld $code/impact.c $code/board.c -o $dir/board.elf -lm || found "it does not build, or not into 128 KiB of flash and 256 KiB of RAM"
-! arm-none-eabi-nm $dir/board.elf | grep -iE ' _?(malloc|_malloc_r|sbrk|printf|fputs)$' || found "it has malloc or stdio"
+    -T $code/board.ld $code/impact.c $code/board.c -o $dir/board.elf -lm ||
+    found "it does not build, or not into 128 KiB of flash and 256 KiB of RAM"
+! arm-none-eabi-nm $dir/board.elf | grep -iE ' _?(malloc|_malloc_r|sbrk|printf|fputs)$' ||
+    found "it has malloc or stdio"
 timeout 1500 qemu-system-arm -M mps2-an386 -nographic -monitor none -serial none \
     -chardev stdio,id=text -semihosting-config enable=on,target=native,chardev=text -kernel $dir/board.elf \
     >$dir/board.out </dev/null ||

@@ -1775,30 +1775,16 @@ static inline void mpm__ptw_split(const mpm_block *b, mpm__ptw_lanes *a)
         }
 }
 
-/* s <- R s R^T with R of Hughes and Winget: R = I + u (H + H^2), H v = h x v, h half the rotation
-   increment, u = 2/(1 + h.h). R is orthogonal for any h, so invariants are kept to rounding. */
+/* s <- R s R^T with R of Hughes and Winget: mpm_rotate. */
 static inline void mpm__ptw_rotate_proper(const mpm_block *b, mpm__ptw_lanes *a)
 {
-    int i, k = a->first;
+    int i, j, k = a->first;
     for (i = 0; i < a->count; i++) {
-        mpm_real x = b->spin[0][k + i] / 2, y = b->spin[1][k + i] / 2, z = b->spin[2][k + i] / 2;
-        mpm_real u = 2 / (1 + x * x + y * y + z * z);
-        mpm_real r00 = 1 - u * (y * y + z * z), r01 = u * (x * y - z), r02 = u * (x * z + y);
-        mpm_real r10 = u * (x * y + z), r11 = 1 - u * (x * x + z * z), r12 = u * (y * z - x);
-        mpm_real r20 = u * (x * z - y), r21 = u * (y * z + x), r22 = 1 - u * (x * x + y * y);
-        mpm_real sxx = a->rotated[0][i], syy = a->rotated[1][i], szz = a->rotated[2][i];
-        mpm_real syz = a->rotated[3][i], sxz = a->rotated[4][i], sxy = a->rotated[5][i];
-        mpm_real m00 = r00 * sxx + r01 * sxy + r02 * sxz, m01 = r00 * sxy + r01 * syy + r02 * syz;
-        mpm_real m02 = r00 * sxz + r01 * syz + r02 * szz, m10 = r10 * sxx + r11 * sxy + r12 * sxz;
-        mpm_real m11 = r10 * sxy + r11 * syy + r12 * syz, m12 = r10 * sxz + r11 * syz + r12 * szz;
-        mpm_real m20 = r20 * sxx + r21 * sxy + r22 * sxz, m21 = r20 * sxy + r21 * syy + r22 * syz;
-        mpm_real m22 = r20 * sxz + r21 * syz + r22 * szz;
-        a->rotated[0][i] = m00 * r00 + m01 * r01 + m02 * r02;
-        a->rotated[1][i] = m10 * r10 + m11 * r11 + m12 * r12;
-        a->rotated[2][i] = m20 * r20 + m21 * r21 + m22 * r22;
-        a->rotated[3][i] = m10 * r20 + m11 * r21 + m12 * r22;
-        a->rotated[4][i] = m00 * r20 + m01 * r21 + m02 * r22;
-        a->rotated[5][i] = m00 * r10 + m01 * r11 + m02 * r12;
+        mpm_real w[3], s[6];
+        for (j = 0; j < 3; j++) w[j] = b->spin[j][k + i];
+        for (j = 0; j < 6; j++) s[j] = a->rotated[j][i];
+        mpm_rotate(w, s);
+        for (j = 0; j < 6; j++) a->rotated[j][i] = s[j];
     }
 }
 

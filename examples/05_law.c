@@ -1,4 +1,5 @@
-/* 05_law - laws of one's own, on one page: a strength, a bond rule, a contact law. Two blocks of a metal are thrown
+/* 05_law - laws of one's own, on one page: a strength, a bond rule, a contact law (09_shear: a whole law, which must
+   turn its stress). Two blocks of a metal are thrown
    against each other at 100 m/s each. They yield by a law of this page; where they touch they bond as they yield; and
    when they spring apart, what has bonded is drawn off by a cohesive law: traction grows with the opening up to a
    strength of 100 MPa and falls to nothing again, so that 10 J/m^2 are spent. Each law is held to its number.

@@ -5,8 +5,9 @@
    Expected: 2074.3 uN, both forces to 0.4 %; the momentum to round-off; and the ledger knows the work, to 0.1 %.
    The punch is a body without stress, whose nodes are given its velocity twice in a step, before contact and after it:
    what the second takes is the force. A contact law of this page treats it as infinitely heavy. What is approximated:
-   its face is felt where both bodies share nodes, up to a cell before it is there; here it starts on the block, and
-   on a grid plane. Units um, us, ng: stress in MPa, force in uN, energy in pJ. SPDX-License-Identifier: MIT */
+   its face is felt where both bodies share nodes, up to a cell before it is there; here it starts on the block, on a
+   grid plane. mpm_node_push sets momentum and force, which move the points; 09_shear sets what strains them too, the
+   velocity of MUSL. Units um, us, ng: stress in MPa, force in uN, energy in pJ. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "mpm.h"
 #include "mpm_ptw.h"
@@ -121,7 +122,6 @@ int main(void)
     mpm_material al;
     mpm_totals t;
     mpm_world w;
-
     if (!begin(&w, &al, 1)) return 1;
     exact = (double)(al.young * (1 - al.poisson) / ((1 + al.poisson) * (1 - 2 * al.poisson))) * area * depth / height;
     while (w.time < MPM_R(0.04)) {

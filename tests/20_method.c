@@ -4,6 +4,8 @@
 #include "scene.h"
 #include "check.h"
 
+#include <string.h>
+
 static const double eps = (double)MPM_EPSILON;
 
 static double worst_stress(const mpm_world *w)
@@ -293,6 +295,55 @@ static void normals(void)
     }
 }
 
+/* The matrix that turns by an angle about a unit axis (Rodrigues), applied to a tensor: R s R^T, all in full. */
+static void turned(const double *axis, double angle, const mpm_real s[6], double out[3][3])
+{
+    const double S[3][3] = {{(double)s[0], (double)s[5], (double)s[4]},
+                            {(double)s[5], (double)s[1], (double)s[3]},
+                            {(double)s[4], (double)s[3], (double)s[2]}};
+    const double K[3][3] = {{0, -axis[2], axis[1]}, {axis[2], 0, -axis[0]}, {-axis[1], axis[0], 0}};
+    double R[3][3];
+    int i, j, k, l;
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++) {
+            R[i][j] = (i == j ? cos(angle) : 0) + sin(angle) * K[i][j] + (1 - cos(angle)) * axis[i] * axis[j];
+            out[i][j] = 0;
+        }
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++)
+            for (k = 0; k < 3; k++)
+                for (l = 0; l < 3; l++) out[i][j] += R[i][k] * S[k][l] * R[j][l];
+}
+
+/* mpm_rotate by an increment of 2 tan(angle/2) turns by the angle, however large, right-handed about its axis; and
+   small ones add up. */
+static void rotate(void)
+{
+    const double axis[3] = {2.0 / 7, -3.0 / 7, 6.0 / 7};
+    const mpm_real start[6] = {3, -1, 2, MPM_R(0.5), MPM_R(-2.5), 1};
+    const double angles[] = {1e-3, 0.3, 1.5, 3};
+    double wanted[3][3], worst;
+    mpm_real s[6], w[3];
+    size_t k;
+    int d, n;
+    for (k = 0; k < sizeof angles / sizeof *angles; k++) {
+        for (d = 0; d < 3; d++) w[d] = (mpm_real)(2 * tan(angles[k] / 2) * axis[d]);
+        memcpy(s, start, sizeof s);
+        mpm_rotate(w, s);
+        turned(axis, angles[k], start, wanted);
+        worst = fabs((double)s[0] - wanted[0][0]) + fabs((double)s[1] - wanted[1][1]) +
+                fabs((double)s[2] - wanted[2][2]) + fabs((double)s[3] - wanted[1][2]) +
+                fabs((double)s[4] - wanted[0][2]) + fabs((double)s[5] - wanted[0][1]);
+        CHECK_NEAR("rotate: as the matrix of the angle does", worst, 0, 200 * eps);
+    }
+    memcpy(s, start, sizeof s);
+    for (d = 0; d < 3; d++) w[d] = (mpm_real)(axis[d] * 1e-3);
+    for (n = 0; n < 1000; n++) mpm_rotate(w, s);
+    turned(axis, 1, start, wanted); /* each step falls short by angle^3/12 */
+    CHECK_NEAR("rotate: a thousand small ones", s[0], wanted[0][0], 1e-6 + 1e4 * eps);
+    CHECK_RELATIVE("... keep the trace", s[0] + s[1] + s[2], 4, 1e4 * eps);
+}
+
 int main(void)
 {
     int basis;
@@ -305,5 +356,6 @@ int main(void)
     three_bodies(MPM_CONTACT_STICK, "stick");
     three_bodies(MPM_CONTACT_WELD, "weld");
     normals();
+    rotate();
     return check_end();
 }

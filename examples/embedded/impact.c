@@ -1,9 +1,9 @@
 /* impact - a cold spray impact on a microcontroller: float, a static array for memory, no malloc, no files, one hook
-   for text (board.h). An aluminium ball of 14 um hits aluminium at 810 m/s and stays; rings about its axis, 1268 points.
-   `make embedded` builds it for a Cortex-M4 with 128 KiB of flash and 256 KiB of RAM and for the machine at hand, runs
-   both, the first under qemu-system-arm, and holds one to the other: their numbers are the same to 1e-4.
-   What makes it small: MPM_FLOAT (memory), MPM_BLOCK 8 (stack), MPM_NO_INLINE, MPM_STATIC and -Os (code), a description
-   whose points are counted before memory is asked for, and structs that are static rather than on the stack.
+   for text (board.h). An aluminium ball of 14 um hits aluminium at 810 m/s and stays; rings about its axis, 1268
+   points. `make embedded` builds it for a Cortex-M4 with 128 KiB of flash and 256 KiB of RAM and for the machine at
+   hand, runs both, the first under qemu-system-arm, and holds one to the other: their numbers are the same to 1e-4.
+   What makes it small: MPM_FLOAT (memory), MPM_BLOCK 8 (stack), MPM_NO_INLINE, MPM_STATIC and -Os (code), a
+   description whose points are counted before memory is asked for, and structs that are static, not on the stack.
    Expected: 64 KiB of flash, a stack of 6 KiB, 20 % of the ball's surface bonded. Units um, us, ng: velocity in m/s,
    energy in pJ. SPDX-License-Identifier: MIT */
 #define MPM_MALLOC(n) ((void)(n), (void *)0) /* there is none: whoever asks for memory is told so */

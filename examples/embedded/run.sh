@@ -18,7 +18,8 @@ for tool in arm-none-eabi-gcc qemu-system-arm; do
     command -v $tool >/dev/null || skip "$tool is not installed"
 done
 echo 'int main(void) { return 0; }' |
-    arm-none-eabi-gcc --specs=nano.specs --specs=nosys.specs -x c - -o $dir/probe.elf 2>/dev/null || skip "arm-none-eabi-gcc has no newlib"
+    arm-none-eabi-gcc --specs=nano.specs --specs=nosys.specs -x c - -o $dir/probe.elf 2>/dev/null ||
+    skip "arm-none-eabi-gcc has no newlib"
 arm-none-eabi-gcc "$@" -Os -mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -ffunction-sections \
     -fdata-sections -fno-inline-functions-called-once -Wl,--gc-sections --specs=nano.specs -nostartfiles \
     -T $code/board.ld $code/impact.c $code/board.c -o $dir/board.elf -lm ||

@@ -119,6 +119,8 @@ static void test_run(void)
     mpm_spray_desc d = mpm_spray_desc_default();
     mpm_status status = MPM_OK;
     CHECK_EQUAL("caller's memory too small", mpm_spray_init(&s, &d, memory, sizeof memory), MPM_ERR_MEMORY);
+    CHECK_EQUAL("... that is not aligned", mpm_spray_init(&s, &d, (char *)memory + 1, 64), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... is named", !strcmp(s.fault.field, "memory (not aligned)") && s.fault.value == 1);
     d.capacity = 60;
     done("init", mpm_spray_init(&s, &d, NULL, 0));
     while (status >= 0 && s.tally.step < 1000) status = mpm_spray_step(&s);

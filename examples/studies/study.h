@@ -7,6 +7,7 @@
 #include "impact_options.h"
 #include "plots.h"
 #include "program.h"
+#include "sweep.h"
 #include "terminal.h"
 
 /* ---- the case ------------------------------------------------------------------------------ */
@@ -368,42 +369,7 @@ static inline int study_run(study *s, const impact_case *c, double *value, char 
 /* folder/runs/<hash of the key>.json, or "" where that is too long. Returns path. */
 static inline const char *study_path(const study *s, const char *key, char *path, size_t n)
 {
-    char name[40] = "runs/", hash[HASH_DIGITS];
-    strcat(strcat(name, hash_digits(hash_text(HASH_NONE, key), hash)), ".json");
-    return file_in(s->folder, name, path, n);
-}
-
-/* The checksum of a run: of its case and of every value as it is written. */
-static inline const char *study_sum(const char *key, const double *value, char text[HASH_DIGITS])
-{
-    uint64_t h = hash_text(HASH_NONE, key);
-    char number[OPTION_NUMBER];
-    int k;
-    for (k = 0; k < STUDY_VALUES; k++) {
-        h = hash_text(h, isfinite(value[k]) ? " " : " null");
-        if (!isfinite(value[k])) continue;
-        mpm_io_number_text(number, sizeof number, value[k]);
-        h = hash_text(h, number);
-    }
-    return hash_digits(h, text);
-}
-
-/* Takes a run out of the text of its file. Returns 1 if it is whole and of this case. */
-static inline int study_take(const char *text, const char *key, double *value)
-{
-    char sum[HASH_DIGITS], *end;
-    const char *at = json_value(text, "case");
-    int k;
-    if (!at || *at != '"' || strncmp(at + 1, key, strlen(key)) || at[1 + strlen(key)] != '"') return 0;
-    for (k = 0; k < STUDY_VALUES; k++) {
-        at = json_value(text, study_name[k]);
-        if (!at) return 0;
-        value[k] = strtod(at, &end);
-        if (end == at) value[k] = NAN; /* null */
-    }
-    at = json_value(text, "checksum");
-    study_sum(key, value, sum);
-    return at && *at == '"' && !strncmp(at + 1, sum, strlen(sum)) && at[1 + strlen(sum)] == '"';
+    return kept_path(s->folder, "runs", key, ".json", path, n);
 }
 
 /* Reads a finished run. Returns 1 if it is there, whole and of this very case; -1 if its file is there and is not. */
@@ -414,7 +380,7 @@ static inline int study_look(const study *s, const impact_case *c, double *value
     if (!key) return 0;
     study_path(s, key, path, sizeof path);
     whole = text_read(path, text, sizeof text);
-    found = study_take(text, key, value);
+    found = kept_take(text, HASH_NONE, key, study_name, value, STUDY_VALUES);
     free(key);
     return found ? 1 : whole && !*text ? 0 : -1;
 }
@@ -424,24 +390,15 @@ static inline int study_find(const study *s, const impact_case *c, double *value
     return study_look(s, c, value) > 0;
 }
 
-static inline int study_write(const char *path, const char *key, const double *value, mpm_fault *fault)
-{
-    char sum[HASH_DIGITS];
-    mpm_io_json j;
-    int k;
-    if (mpm_io_json_begin(&j, path, fault) < 0) return 0;
-    mpm_io_json_string(&j, "case", key);
-    for (k = 0; k < STUDY_VALUES; k++) mpm_io_json_number(&j, study_name[k], value[k]);
-    mpm_io_json_string(&j, "checksum", study_sum(key, value, sum));
-    return mpm_io_json_end(&j, fault) >= 0;
-}
-
 static inline int study_keep(const study *s, const impact_case *c, const double *value, char *message, size_t n)
 {
     char path[PATH_BYTES], *key = study_key(c, s->whole);
     mpm_fault fault;
     int kept = key != NULL && mpm_io_make_directory(file_in(s->folder, "runs", path, sizeof path), &fault) >= 0;
-    if (kept) kept = study_write(study_path(s, key, path, sizeof path), key, value, &fault);
+    if (kept) {
+        study_path(s, key, path, sizeof path);
+        kept = kept_write(path, HASH_NONE, key, study_name, value, STUDY_VALUES, &fault);
+    }
     free(key);
     if (!kept) snprintf(message, n, "cannot write %.300s", *path ? path : "a path that is too long");
     return kept;

@@ -187,6 +187,11 @@ KILLS ?= 200
 hard: ## memory and disks that fail, kill -9, sanitizers, analysers, compilers: writes docs/quality.md; KILLS=200
 	@sh tests/hard/run.sh $(KILLS) $(JOBS) $(CHECKS)
 
+.PHONY: sweep-test
+sweep-test: build/sweep build/impact ## build/sweep on 200 tasks with killed workers; under make, xargs, GNU parallel, Slurm where they are installed
+	@sh tests/69_sweep.sh "$(CC)" 200
+	@sh tests/sweep_engines.sh
+
 # Without the tests whose work is done by programs, and without the long runs of 70_bits.
 UNITS    = $(filter-out $(DOUBLES) tests/60_% tests/61_% tests/63_% tests/70_%,$(sort $(wildcard tests/[0-9]*.c)))
 coverage: build/pull ## lines and branches of the headers that the unit tests reach: at least 98 % of the lines

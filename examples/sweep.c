@@ -585,7 +585,7 @@ static int task_work(sweep *s, int number)
     if (record_read(s, "runs", t->key, value)) return t->state = STATE_FINISHED, 1; /* before we had it */
     done = task_carry_out(s, number, &c, value);
     if (done > 0) t->state = task_end(s, number, value);
-    else claim_release(&c);
+    if (t->state != STATE_FINISHED) claim_release(&c); /* a finished one keeps its claim: NFS may show its result late */
     return done != 0;
 }
 

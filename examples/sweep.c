@@ -17,8 +17,9 @@
 
    A task is known by its content: program, version, options, and what the files hold that they name. Its result is a
    folder, OUT/runs/HASH, that gets its name when it is whole; it is never made twice. A task that a worker has begun is
-   claimed; a claim that shows no sign of life for --dead seconds is taken over. Needs a POSIX system, since it starts
-   programs and waits for them; libc and libm only. SPDX-License-Identifier: MIT */
+   claimed; a claim that shows no sign of life for --dead seconds is taken over. What was stopped goes on from its
+   checkpoint. Needs a POSIX system, since it starts programs and waits for them; libc and libm only.
+   SPDX-License-Identifier: MIT */
 #if defined(__unix__) || defined(__APPLE__)
 #define _POSIX_C_SOURCE 200809L
 #define _XOPEN_SOURCE 700 /* realpath */
@@ -458,15 +459,17 @@ static char **task_arguments(const sweep *s, int number, int resume, char **owne
     return argv;
 }
 
-/* Takes over the folder of an attempt that died, whole or not at all: as a copy, since who was taken for dead may still
-   write there. Returns 1 if there is a checkpoint to go on from. */
+/* Takes over the folder of an attempt that ended early, if there is something to go on from, whole or not at all: as a
+   copy, since who was taken for dead may still write there. Returns 1 if the program finds it by itself (the finished
+   runs of a study), 2 if it must be told (a checkpoint), 0 if there is nothing. */
 static int work_copy(const task *t, const char *old, const char *work)
 {
     char path[PATH_BYTES], copy[PATH_BYTES + 8];
-    file_in(old, "checkpoint.bin", path, sizeof path);
-    if (!help_of(t->program, "resume") || access(path, F_OK) != 0) return 0;
+    const int told = help_of(t->program, "resume") &&
+                     access(file_in(old, "checkpoint.bin", path, sizeof path), F_OK) == 0;
+    if (!told && access(file_in(old, "runs", path, sizeof path), F_OK) != 0) return 0;
     snprintf(copy, sizeof copy, "%s.copy", work);
-    return command("cp", "-R", old, copy) && rename(copy, work) == 0;
+    return command("cp", "-R", old, copy) && rename(copy, work) == 0 ? 1 + told : 0;
 }
 
 /* Makes the folder of an attempt; what the ones before left goes. Returns 1, or 2 with a checkpoint; 0 after a
@@ -475,14 +478,14 @@ static int work_begin(const sweep *s, const task *t, int attempt, const char *wo
 {
     char old[PATH_BYTES];
     mpm_fault fault;
-    int k, resume = 0;
+    int k, found = 0;
     for (k = attempt - 1; k > 0; k--) {
         if (access(work_path(s, t->key, k, old, sizeof old), F_OK) != 0) continue;
-        if (!resume) resume = work_copy(t, old, work);
+        if (!found) found = work_copy(t, old, work);
         command("rm", "-rf", old, NULL);
     }
-    if (!resume && mpm_io_make_directory(work, &fault) < 0) return report(&fault, work);
-    return resume ? 2 : 1;
+    if (mpm_io_make_directory(work, &fault) < 0) return report(&fault, work);
+    return found == 2 ? 2 : 1;
 }
 
 /* Asks a program to end, in earnest after 20 seconds. */
@@ -585,7 +588,7 @@ static int task_work(sweep *s, int number)
     if (record_read(s, "runs", t->key, value)) return t->state = STATE_FINISHED, 1; /* before we had it */
     done = task_carry_out(s, number, &c, value);
     if (done > 0) t->state = task_end(s, number, value);
-    if (t->state != STATE_FINISHED) claim_release(&c); /* a finished one keeps its claim: NFS may show its result late */
+    if (t->state != STATE_FINISHED) claim_release(&c); /* a finished one keeps it: NFS may show the result late */
     return done != 0;
 }
 
@@ -854,12 +857,12 @@ static int script(const sweep *s)
         print_job(s, folder, "SLURM_ARRAY_TASK_ID", "");
     } else if (s->pbs) {
         print_submit(s, "--pbs", "qsub");
-        printf("# not tried: nobody here has a PBS\n#PBS -N sweep\n#PBS -J 0-%lld\n", jobs > 1 ? jobs - 1 : 1);
+        printf("# not tried\n#PBS -N sweep\n#PBS -J 0-%lld\n", jobs > 1 ? jobs - 1 : 1);
         printf("#PBS -l select=1:ncpus=1,walltime=1:00:00\n#PBS -r y\n#PBS -j oe\n");
         print_job(s, folder, "PBS_ARRAY_INDEX", "");
     } else {
         print_submit(s, "--lsf", "bsub");
-        printf("# not tried: nobody here has an LSF\n#BSUB -J \"sweep[1-%lld]\"\n#BSUB -n 1\n#BSUB -W 1:00\n", jobs);
+        printf("# not tried\n#BSUB -J \"sweep[1-%lld]\"\n#BSUB -n 1\n#BSUB -W 1:00\n", jobs);
         printf("#BSUB -r\n#BSUB -o sweep_%%J_%%I.txt\n");
         print_job(s, folder, "LSB_JOBINDEX", " - 1");
     }

@@ -1,6 +1,6 @@
 #!/bin/sh
-# build/sweep: tasks from a table, by several workers at once who are killed at random moments; every result is there once,
-# none that was finished was made again, and all bytes but the times equal those of one worker that nobody disturbed.
+# build/sweep: tasks from a table, by several workers at once who are killed at random moments; every result is there
+# once, none that was finished was made again, and all bytes but the times equal those of one worker left in peace.
 #   sh tests/69_sweep.sh CC [TASKS [SEED]]: 20 tasks, or more; `make sweep-test` takes 200
 set -u
 tasks=${2:-20} seed=${3:-1}
@@ -41,7 +41,8 @@ chmod +x "$dir/hit" "$dir/reader"
 awk -v n="$tasks" -v hit="$dir/hit" 'BEGIN {
     print "# a sweep of the tests\nprogram,velocity,bond,geometry,cell,spacing,time,frames"
     for (k = 0; k < n; k++)
-        printf "%s,%g,%s,axisymmetric,2,1,%d,0\n", hit, 600 + 300 * k / n, k % 3 ? "" : "none", 5 + 3 * (k % 2) }' >"$table"
+        printf "%s,%g,%s,axisymmetric,2,1,%d,0\n", hit, 600 + 300 * k / n, k % 3 ? "" : "none", 5 + 3 * (k % 2)
+}' >"$table"
 keys=pbcp_percent,v_rest_mean_m_s,eps_mean,steps
 sweep() { # folder, options...
     folder=$1
@@ -58,8 +59,9 @@ ends() { # status, command...
 says() { # text, status, command...: it ends so and says so
     text=$1
     shift
-    ends "$@" >"$dir/said" 2>&1 || { cat "$dir/said"; false; } && grep -qF -- "$text" "$dir/said" ||
-        { head -n 2 "$dir/said"; false; }
+    ends "$@" >"$dir/said" 2>&1 && grep -qF -- "$text" "$dir/said" && return
+    cat "$dir/said"
+    false
 }
 started() { # folder: how many runs were begun
     if [ -f "$dir/$1/started" ]; then wc -l <"$dir/$1/started"; else echo 0; fi
@@ -70,12 +72,11 @@ same_results() { # two folders: the same results, in the same bytes but for the 
     ls "$dir/$2/runs" >"$dir/names.2"
     cmp "$dir/names.1" "$dir/names.2" && cmp "$dir/$1/results.csv" "$dir/$2/results.csv" || return 1
     while read -r hash; do
-        for f in 1 2; do
-            eval "from=\$dir/\$$f/runs/$hash"
-            grep -vE '"(cpu_seconds|point_steps_per_second)"' "$from/summary.json" >"$dir/summary.$f"
-            cp "$from/stdout.txt" "$dir/stdout.$f"
+        for folder in "$1" "$2"; do
+            cat "$dir/$folder/runs/$hash/summary.json" "$dir/$folder/runs/$hash/stdout.txt" |
+                grep -vE '"(cpu_seconds|point_steps_per_second)"' >"$dir/$folder.json"
         done
-        cmp "$dir/summary.1" "$dir/summary.2" && cmp "$dir/stdout.1" "$dir/stdout.2" || return 1
+        cmp "$dir/$1.json" "$dir/$2.json" || return 1
     done <"$dir/names.1"
 }
 
@@ -169,6 +170,37 @@ check "... from the checkpoint" grep -q -- --resume "$dir/stopped/started"
 check "... collected" build/sweep "$dir/long.csv" --out "$dir/stopped" --collect --keys $keys
 check "... to the same numbers" cmp "$dir/whole/results.csv" "$dir/stopped/results.csv"
 
+# ---- taken for dead, and alive: a stopped worker whose program runs on; the long test has the time for it
+revived() { # its task is another's, done by now; it finds that and ends well
+    build/sweep "$dir/long.csv" --quiet --out "$dir/revived" --run --dead 3 &
+    pid=$!
+    until [ -s "$dir/revived/started" ]; do sleep 0.1; done
+    kill -STOP $pid
+    build/sweep "$dir/long.csv" --quiet --out "$dir/revived" --run --dead 3
+    other=$?
+    kill -CONT $pid
+    wait $pid
+    [ "$other$?" = 00 ]
+}
+if [ "$tasks" -ge 100 ]; then
+    check "a worker taken for dead comes back" revived
+    check "... its task was begun twice" begun revived 2
+    check "... collected" build/sweep "$dir/long.csv" --out "$dir/revived" --collect --keys $keys
+    check "... to the same numbers" cmp "$dir/whole/results.csv" "$dir/revived/results.csv"
+    check "... nothing half-done is left" [ -z "$(ls "$dir/revived/work")" ]
+fi
+
+# ---- a study keeps the runs that it has made
+coarse=gimp,2,1,24,6,0.5,40,1000,2e5,stays,500,900,100,50
+{
+    printf 'program,method,functions,cell,spacing,substrate-diameter,substrate-height,margin,time,gc,gdot,rule,'
+    printf 'low,high,scan,step,limit\ncritical_velocity,thesis,%s,2\n' $coarse
+} >"$dir/search.csv"
+if [ -x build/critical_velocity ]; then
+    check "a study that stops after two runs" build/sweep "$dir/search.csv" --out "$dir/search" --run --dead 3
+    check "... goes on with them" grep -q '"runs_made_now": [12],' "$dir"/search/runs/*/summary.json
+fi
+
 # ---- inputs, flags, failures
 echo first >"$dir/input"
 printf 'program,file,loud,fail\r\n"%s", "%s" ,on,\r\n%s,%s,off,\r\n\r\n' "$dir/reader" "$dir/input" "$dir/reader" \
@@ -198,7 +230,7 @@ refused() { # text, options...: an error that names it
     shift
     check "refused: $text" says "$text" 1 build/sweep "$@" --out "$dir/refused"
 }
-lines() { printf "$@" >"$dir/bad.csv"; }
+lines() { printf '%b' "$1" >"$dir/bad.csv"; }
 refused "wanted: one of" "$table"
 refused "wanted: a table" --run
 refused "none.csv cannot be read" "$dir/none.csv" --run

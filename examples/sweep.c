@@ -412,20 +412,22 @@ static const char *work_path(const sweep *s, const char *key, int n, char *path,
     return kept_path(s->folder, "work", key, ending, path, room);
 }
 
-/* Gives the work of a task its final name, unless it has a result by now. Returns 1; 0 after a message. */
+/* Gives the work of a task its final name, unless it has a result by now. Returns 1; 0 after a message; -1 if the work
+   is gone: another has taken over. */
 static int publish(const sweep *s, const char *key, const char *work, const double *value)
 {
     char target[PATH_BYTES], path[PATH_BYTES];
     double other[TASK_VALUES];
     mpm_fault fault;
     file_in(work, "task.json", path, sizeof path);
-    if (!kept_write(path, outputs_hash(work), key, task_value, value, TASK_VALUES, &fault))
-        return report(&fault, path);
     kept_path(s->folder, value[TASK_STATUS] > 0 ? "failed" : "runs", key, "", target, sizeof target);
+    if (!kept_write(path, outputs_hash(work), key, task_value, value, TASK_VALUES, &fault))
+        return access(work, F_OK) != 0 ? -1 : report(&fault, path);
     if (rename(work, target) == 0) return 1;
     if (record_read(s, "runs", key, other)) return command("rm", "-rf", work, NULL); /* another was faster */
     command("rm", "-rf", target, NULL); /* damaged, or failed before */
     if (rename(work, target) == 0) return 1;
+    if (access(work, F_OK) != 0) return -1;
     fprintf(stderr, "error: %s cannot be renamed to %s\n", work, target);
     return 0;
 }
@@ -472,6 +474,15 @@ static int work_copy(const task *t, const char *old, const char *work)
     return command("cp", "-R", old, copy) && rename(copy, work) == 0 ? 1 + told : 0;
 }
 
+/* Removes what an attempt left: under another name, so that it is gone at once for who was taken for dead. */
+static void work_drop(const char *old)
+{
+    char away[PATH_BYTES + 8], copy[PATH_BYTES + 8];
+    snprintf(away, sizeof away, "%s.old", old);
+    snprintf(copy, sizeof copy, "%s.copy", old);
+    if (rename(old, away) == 0 || access(away, F_OK) == 0 || access(copy, F_OK) == 0) command("rm", "-rf", away, copy);
+}
+
 /* Makes the folder of an attempt; what the ones before left goes. Returns 1, or 2 with a checkpoint; 0 after a
    message. */
 static int work_begin(const sweep *s, const task *t, int attempt, const char *work)
@@ -480,9 +491,9 @@ static int work_begin(const sweep *s, const task *t, int attempt, const char *wo
     mpm_fault fault;
     int k, found = 0;
     for (k = attempt - 1; k > 0; k--) {
-        if (access(work_path(s, t->key, k, old, sizeof old), F_OK) != 0) continue;
+        work_path(s, t->key, k, old, sizeof old);
         if (!found) found = work_copy(t, old, work);
-        command("rm", "-rf", old, NULL);
+        work_drop(old);
     }
     if (mpm_io_make_directory(work, &fault) < 0) return report(&fault, work);
     return found == 2 ? 2 : 1;

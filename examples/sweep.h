@@ -84,6 +84,16 @@ static inline int kept_write(const char *path, uint64_t h, const char *key, cons
 
 /* ---- claims -------------------------------------------------------------------------------- */
 
+/* A task has claims folder/claims/<hash>.1, .2, ...: the last one counts. Its owner sets its time again and again; one
+   that has grown old belongs to a worker that is dead, and whoever makes the next one has the task. A claim is made by
+   link(), of which one succeeds, on NFS too; nothing is removed, so that no worker can remove what is another's.
+   Ages are told by the times that the file system gives, never by two machines' clocks. The folder claims is there. */
+typedef struct claim {
+    const char *folder, *key;
+    int number; /* of claims so far: 0, 1, .. */
+    int alive;  /* the last one is younger than what is dead */
+} claim;
+
 #if defined(__unix__) || defined(__APPLE__)
 #define SWEEP_CLAIMS 1
 #include <fcntl.h>
@@ -92,16 +102,6 @@ static inline int kept_write(const char *path, uint64_t h, const char *key, cons
 #include <sys/utsname.h>
 #include <unistd.h>
 #include <utime.h>
-
-/* A task has claims folder/claims/<hash>.1, .2, ...: the last one counts. Its owner sets its time again and again; one
-   that has grown old belongs to a worker that is dead, and whoever makes the next one has the task. A claim is made by
-   link(), of which one succeeds, on NFS too; nothing is removed, so that no worker can remove what is another's.
-   Ages are told by the times that the file system gives, never by two machines' clocks. */
-typedef struct claim {
-    const char *folder, *key;
-    int number; /* of claims so far: 0, 1, .. */
-    int alive;  /* the last one is younger than what is dead */
-} claim;
 
 static inline const char *claim_path(const claim *c, int number, char *path, size_t n)
 {
@@ -196,6 +196,23 @@ static inline void claim_release(const claim *c)
     struct utimbuf old = {0, 0};
     utime(claim_path(c, c->number, path, sizeof path), &old);
 }
+
+/* While others work: a second. */
+static inline void claim_wait(void) { sleep(1); }
+#else
+/* Without such calls a worker is the only one. */
+static inline claim claim_look(const char *folder, const char *key, double dead)
+{
+    claim c = {NULL, NULL, 0, 0};
+    c.folder = dead > 0 ? folder : NULL;
+    c.key = key;
+    return c;
+}
+
+static inline int claim_take(claim *c) { return c->alive = 1; }
+static inline int claim_beat(const claim *c) { return c->alive; }
+static inline void claim_release(const claim *c) { (void)c; }
+static inline void claim_wait(void) {}
 #endif
 
 #endif

@@ -201,6 +201,25 @@ if [ -x build/critical_velocity ]; then
     check "... goes on with them" grep -q '"runs_made_now": [12],' "$dir"/search/runs/*/summary.json
 fi
 
+# ---- two processes of one study share its runs
+calibrate() { # folder
+    build/calibrate --functions gimp --cell 2 --spacing 1 --substrate-diameter 24 --substrate-height 6 --margin 0.5 \
+        --time 4 --columns 5 --rows 5 --diameter-2 16 --gc-low 200 --gc-high 4000 --pbcp-1 10 --pbcp-2 10 \
+        --restitution-1 1 --restitution-2 1 --quiet --out "$dir/$1"
+}
+count() { find "$dir/shared/$1" -name "$2" | wc -l; }
+if [ -x build/calibrate ]; then
+    check "a calibration by one process" calibrate alone
+    calibrate shared &
+    calibrate shared
+    one=$?
+    wait $!
+    check "the same by two: both end well" [ "$one$?" = 00 ]
+    check "... each made some of the runs" [ "$(sed 's/[.][^.]*$//' "$dir"/shared/claims/* | sort -u | wc -l)" -eq 2 ]
+    check "... each run once" [ "$(count claims '*.1') $(count claims '*.2')" = "$(count runs '*.json') 0" ]
+    check "... to the same classes" cmp "$dir/alone/tasks.csv" "$dir/shared/tasks.csv"
+fi
+
 # ---- inputs, flags, failures
 echo first >"$dir/input"
 printf 'program,file,loud,fail\r\n"%s", "%s" ,on,\r\n%s,%s,off,\r\n\r\n' "$dir/reader" "$dir/input" "$dir/reader" \

@@ -4,7 +4,7 @@
    of each size by logistic regression and crosses the boundaries. Only where the class changes is the grid
    of pairs run in full (--plain: everywhere, 375 runs a size as source A). Each run is a task of its own:
 
-       build/calibrate                                    all of it, here
+       build/calibrate                                    all of it, here; started several times, it shares the work
        build/calibrate --list                             the tasks not done yet, one a line
        build/calibrate --task 17                          one of them
        build/calibrate --collect                          fit, cross and draw what is done

@@ -252,21 +252,35 @@ static inline void calibration_collect(const calibration *q, const study *s, cal
     calibration_cross(q, r);
 }
 
-/* Runs everything the sweep wants, one task after the other. As study_need. */
+/* Makes the wanted runs of a size that are missing and that no other process makes. As study_need. */
+static inline int calibration_pass(const calibration *q, study *s, int size, const calibration_map *map, int *made,
+                                   char *message, size_t n)
+{
+    double value[STUDY_VALUES];
+    int64_t k;
+    int status;
+    *made = 0;
+    for (k = 0; k < calibration_nodes(q); k++) {
+        const impact_case c = calibration_case(q, size, k);
+        if (!map->wanted[k] || map->bonds[k] >= 0) continue;
+        if ((status = study_share(s, &c, value, message, n)) <= 0) return status;
+        *made += status == 1;
+    }
+    return 1;
+}
+
+/* Runs everything the sweep wants, one task after the other; several processes share the work. As study_need. */
 static inline int calibration_run(const calibration *q, study *s, char *message, size_t n)
 {
     static calibration_map map;
-    double value[STUDY_VALUES];
-    int size, status;
-    int64_t k, missing;
+    int size, status, made;
+    int64_t missing;
     for (size = 0; size < 2; size++)
         while ((missing = calibration_look(q, s, size, &map)) > 0) {
             s->planned = s->done + missing;
-            for (k = 0; k < calibration_nodes(q); k++) {
-                const impact_case c = calibration_case(q, size, k);
-                if (!map.wanted[k] || map.bonds[k] >= 0) continue;
-                if ((status = study_need(s, &c, value, message, n)) <= 0) return status;
-            }
+            if ((status = calibration_pass(q, s, size, &map, &made, message, n)) <= 0) return status;
+            if (stop_asked()) return -1;
+            if (!made) claim_wait();
         }
     return 1;
 }

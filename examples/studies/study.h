@@ -119,6 +119,8 @@ static inline char *study_key(const impact_case *c, int whole)
 enum { STUDY_LIST(STUDY_NUMBER) STUDY_VALUES };
 static const char *const study_name[STUDY_VALUES] = {STUDY_LIST(STUDY_NAME)};
 
+#define STUDY_DEAD 120 /* seconds without a sign of life after which a run is another process's to make */
+
 /* A study under way: where finished runs are kept, and what the progress line needs. */
 typedef struct study {
     const char *folder;     /* finished runs: one file each, in folder/runs */
@@ -127,6 +129,8 @@ typedef struct study {
     int64_t planned, done, fresh; /* runs: in all (a guess at first), finished, of these made now */
     double spent;           /* CPU seconds of the fresh ones */
     int begun;              /* the clock of the line runs */
+    const claim *claim;     /* of the run under way, where several processes share the folder, or NULL */
+    time_t beat;            /* its last sign of life */
     char label[80];
     progress line;
 } study;
@@ -342,6 +346,15 @@ static inline void study_measure(const impact *run, const impact_case *c, const 
 
 static inline double study_seconds(clock_t since) { return (double)(clock() - since) / (double)CLOCKS_PER_SEC; }
 
+/* A sign of life to the others who work in this folder, every now and then. */
+static inline void study_beat(study *s)
+{
+    const time_t now = time(NULL);
+    if (!s->claim || difftime(now, s->beat) < STUDY_DEAD / 6) return;
+    s->beat = now;
+    claim_beat(s->claim);
+}
+
 /* Runs a case to its end, or unless s->whole until its outcome is decided. Returns 1; 0 with a message; -1 when asked
    to stop. */
 static inline int study_run(study *s, const impact_case *c, double *value, char *message, size_t n)
@@ -355,6 +368,7 @@ static inline int study_run(study *s, const impact_case *c, double *value, char 
     while (status >= 0 && run.world.steps < run.steps && !stop_asked()) {
         status = study_step(&watch, &run);
         if (run.world.steps % 64 == 0) study_progress(s, (double)run.world.steps / (double)run.steps);
+        if (run.world.steps % 64 == 0) study_beat(s);
         if (status >= 0 && study_decided(&watch, &run.world) && !s->whole) break;
     }
     if (status < 0) mpm_io_fault_text(message, n, &run.world.fault);
@@ -428,6 +442,27 @@ static inline int study_need(study *s, const impact_case *c, double *value, char
     s->fresh++;
     s->done++;
     return 1;
+}
+
+/* The same, but for a run that another process is making in this folder: then it returns 2, and nothing is done. */
+static inline int study_share(study *s, const impact_case *c, double *value, char *message, size_t n)
+{
+    char path[PATH_BYTES], *key = study_look(s, c, value) == 0 ? study_key(c, s->whole) : NULL;
+    mpm_fault fault;
+    claim k;
+    int status = 2;
+    if (!key) return study_need(s, c, value, message, n);
+    mpm_io_make_directory(file_in(s->folder, "claims", path, sizeof path), &fault);
+    k = claim_look(s->folder, key, STUDY_DEAD);
+    if (!k.alive && claim_take(&k) != 0) { /* where nothing can be written the run says so itself */
+        s->claim = &k;
+        s->beat = time(NULL);
+        status = study_need(s, c, value, message, n);
+        s->claim = NULL;
+        if (status <= 0) claim_release(&k);
+    }
+    free(key);
+    return status;
 }
 
 #endif

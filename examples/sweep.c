@@ -412,22 +412,32 @@ static const char *work_path(const sweep *s, const char *key, int n, char *path,
     return kept_path(s->folder, "work", key, ending, path, room);
 }
 
+/* Renames the work of a task to its result. An answer that got lost on its way, as NFS can lose one, is none: the names
+   count. */
+static int settle(const sweep *s, const char *where, const char *key, const char *work)
+{
+    char target[PATH_BYTES];
+    double value[TASK_VALUES];
+    if (rename(work, kept_path(s->folder, where, key, "", target, sizeof target)) == 0) return 1;
+    return access(work, F_OK) != 0 && record_read(s, where, key, value);
+}
+
 /* Gives the work of a task its final name, unless it has a result by now. Returns 1; 0 after a message; -1 if the work
    is gone: another has taken over. */
 static int publish(const sweep *s, const char *key, const char *work, const double *value)
 {
+    const char *where = value[TASK_STATUS] > 0 ? "failed" : "runs";
     char target[PATH_BYTES], path[PATH_BYTES];
     double other[TASK_VALUES];
     mpm_fault fault;
     file_in(work, "task.json", path, sizeof path);
-    kept_path(s->folder, value[TASK_STATUS] > 0 ? "failed" : "runs", key, "", target, sizeof target);
     if (!kept_write(path, outputs_hash(work), key, task_value, value, TASK_VALUES, &fault))
         return access(work, F_OK) != 0 ? -1 : report(&fault, path);
-    if (rename(work, target) == 0) return 1;
+    if (settle(s, where, key, work)) return 1;
     if (record_read(s, "runs", key, other)) return command("rm", "-rf", work, NULL); /* another was faster */
-    command("rm", "-rf", target, NULL); /* damaged, or failed before */
-    if (rename(work, target) == 0) return 1;
     if (access(work, F_OK) != 0) return -1;
+    kept_path(s->folder, where, key, "", target, sizeof target); /* damaged, or failed before */
+    if (command("rm", "-rf", target, NULL) && settle(s, where, key, work)) return 1;
     fprintf(stderr, "error: %s cannot be renamed to %s\n", work, target);
     return 0;
 }
@@ -471,7 +481,8 @@ static int work_copy(const task *t, const char *old, const char *work)
                      access(file_in(old, "checkpoint.bin", path, sizeof path), F_OK) == 0;
     if (!told && access(file_in(old, "runs", path, sizeof path), F_OK) != 0) return 0;
     snprintf(copy, sizeof copy, "%s.copy", work);
-    return command("cp", "-R", old, copy) && rename(copy, work) == 0 ? 1 + told : 0;
+    if (!command("cp", "-R", old, copy) || (rename(copy, work) != 0 && access(work, F_OK) != 0)) return 0;
+    return 1 + told;
 }
 
 /* Removes what an attempt left: under another name, so that it is gone at once for who was taken for dead. */

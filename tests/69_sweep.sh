@@ -121,13 +121,23 @@ random() { # from, to: a whole number
 worker() { # folder: starts one, pid in $!
     build/sweep "$table" --quiet --out "$dir/$1" --run --dead 3 --tries 1000 2>>"$dir/workers" &
 }
+moment() { # folder: shortly after another run was begun, or after half a second without one
+    naps=0
+    until [ "$(started "$1")" -gt $seen ] || [ $naps -ge 50 ]; do
+        sleep 0.01
+        naps=$((naps + 1))
+    done
+    seen=$(started "$1")
+    sleep "0.0$(random 0 6)"
+}
 killed() { # folder: three workers, one of them killed every now and then and another one started
     kills=0
     worker "$1" && a=$!
     worker "$1" && b=$!
     worker "$1" && c=$!
+    seen=0
     while [ $kills -lt $((tasks / 4)) ]; do
-        sleep "0.$(random 10 25)"
+        moment "$1"
         case $(random 0 2) in 0) who=$a ;; 1) who=$b ;; *) who=$c ;; esac
         case $(random 0 3) in 0) kill -TERM "$who" ;; *) kill -KILL "$who" ;; esac
         wait "$who"

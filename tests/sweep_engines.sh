@@ -1,5 +1,6 @@
 #!/bin/sh
-# One sweep under make -j, xargs -P, GNU parallel and Slurm's job arrays: each collection equals that of one worker.
+# One sweep under make -j, xargs -P, GNU parallel and Slurm's job arrays, and where answers of the file system get lost:
+# each collection equals that of one worker.
 # Called by `make sweep-test`; what is not installed is skipped. Slurm is a real one of this machine alone, with its
 # settings, its key and its ports in build/tests/engines; one task of its array is cancelled and put back in the queue.
 set -u
@@ -60,6 +61,18 @@ by_parallel() { numbers parallel | parallel -j 2 $sweep --out "$dir/parallel" --
 if there parallel; then
     check "GNU parallel" by_parallel
     check "... collected" collected parallel
+fi
+
+# ---- answers that get lost, as on NFS
+lossy() { # every process of it: library before libc
+    seq 3 | LD_PRELOAD="$here/nfs.so" xargs -P 3 -n 1 sh -c "$sweep --out $dir/nfs --run"
+}
+if [ "$(uname -s)" = Linux ] && cc -shared -fPIC -O1 tests/sweep_nfs.c -o "$dir/nfs.so" -ldl 2>"$dir/nfs.said"; then
+    check "links and renamings whose answers are lost" lossy
+    check "... collected" collected nfs
+    check "... each task was run once" [ "$(find "$dir/nfs/claims" -name '*.2' | wc -l)" -eq 0 ]
+else
+    echo "skip - lost answers: no Linux, or no shared library here"
 fi
 
 # ---- Slurm

@@ -188,7 +188,7 @@ hard: ## memory and disks that fail, kill -9, sanitizers, analysers, compilers: 
 	@sh tests/hard/run.sh $(KILLS) $(JOBS) $(CHECKS)
 
 .PHONY: sweep-test
-sweep-test: build/sweep build/impact ## build/sweep on 200 tasks with killed workers; under make, xargs, GNU parallel, Slurm where they are installed
+sweep-test: build/sweep build/impact build/critical_velocity build/calibrate ## build/sweep with workers killed; under make, xargs, GNU parallel, Slurm
 	@sh tests/69_sweep.sh "$(CC)" 200
 	@sh tests/sweep_engines.sh
 

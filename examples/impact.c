@@ -7,6 +7,7 @@
 
    The loop in main() is the method, one call per phase. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
+#include "impact_history.h"
 #include "impact_restart.h"
 
 /* "al", or "al on cu". */
@@ -187,13 +188,14 @@ static void print_table(const impact *s, const impact_case *c, const impact_resu
 }
 
 /* Time integration: one call per phase. Returns 1; 0 after a message; -1 when stopped before, with a checkpoint. */
-static int run(impact *s, const impact_case *c, output *o, impact_stops *stops)
+static int run(impact *s, const impact_case *c, output *o, history *past, impact_stops *stops)
 {
     mpm_world *w = &s->world;
     int status = 1;
     stop_listen();
     output_start(o, w);
     for (;;) {
+        if (history_due(past, w->steps, s->steps)) impact_history_sample(past, s);
         if (output_due(o, w, s->steps) && !write_frame(s, c, o)) return 0;
         if (w->steps >= s->steps) break;
         if ((status = impact_goes_on(s, c, o, stops)) <= 0) break;
@@ -238,10 +240,11 @@ static int start(impact *s, const impact_case *c, output *o, impact_stops *stops
 }
 
 /* Everything that is written at the end, or where the run is stopped. */
-static int finish(const impact *s, const impact_case *c, output *o, const option *options, int n)
+static int finish(const impact *s, const impact_case *c, output *o, const history *past, const option *options, int n)
 {
     const impact_result r = impact_measure(s, c);
-    if (!write_summary(s, &r, o, options, n) || (o->frames > 0 && !write_picture(s, c, o))) return 0;
+    if (!write_summary(s, &r, o, options, n) || !history_csv(past, o->folder)) return 0;
+    if (o->frames > 0 && !write_picture(s, c, o)) return 0;
     if (o->quiet) return 1;
     print_table(s, c, &r, o->cpu);
     printf("\n  %s/summary.json%s\n", o->folder, o->frames > 0 ? ", impact.png, impact.pvd" : "");
@@ -259,6 +262,7 @@ static int carry_out(int argc, char **argv)
                         "Writes summary.json, impact.png, impact.pvd (ParaView) and frames into the output folder.";
     impact_stops stops = {0, 0, 0};
     char message[300], path[PATH_BYTES];
+    history past;
     impact s;
     int parsed, status, resume = 0;
     output_options(&o, options, &n);
@@ -273,8 +277,9 @@ static int carry_out(int argc, char **argv)
     if (!output_check(&o, message, sizeof message) || !impact_stops_check(&stops, message, sizeof message) ||
         !impact_begin(&s, &c, message, sizeof message))
         return !complain(message);
-    status = start(&s, &c, &o, &stops, resume) ? run(&s, &c, &o, &stops) : 0;
-    if (status != 0 && !finish(&s, &c, &o, options, n)) status = 0;
+    impact_history_begin(&past, &s);
+    status = start(&s, &c, &o, &stops, resume) ? run(&s, &c, &o, &past, &stops) : 0;
+    if (status != 0 && !finish(&s, &c, &o, &past, options, n)) status = 0;
     if (status < 0) print_again(argc, argv, "--resume", (long long)s.world.steps, (long long)s.steps);
     if (status > 0) remove(file_in(o.folder, "checkpoint.bin", path, sizeof path));
     impact_end(&s);

@@ -1832,13 +1832,14 @@ static inline size_t mpm__draw_points_inside(const mpm_draw_plot_desc *d, const 
     return n;
 }
 
-/* The legend, in the corner that hides the fewest points. */
+/* The legend, where it hides the fewest points: in a corner, or in the middle of a side where that hides fewer. */
 static inline void mpm__draw_legend(mpm_draw_canvas *c, const mpm__draw_axes *a, const mpm_draw_plot_desc *d)
 {
     double u = c->unit, size = MPM__DRAW_NUMBER * u, row = size + 9 * u, widest = 0, width, height;
     double gap = 10 * u, x = 0, y = 0;
     size_t least = 0;
-    int k, corner, names = 0;
+    static const double place[8][2] = {{1, 0}, {0, 0}, {1, 1}, {0, 1}, {1, 0.5}, {0, 0.5}, {0.5, 0}, {0.5, 1}};
+    int k, names = 0;
     for (k = 0; k < d->curve_count; k++) {
         double w = d->curves[k].name ? mpm_draw_text_width(size, d->curves[k].name) : 0;
         if (w > widest) widest = w;
@@ -1847,11 +1848,11 @@ static inline void mpm__draw_legend(mpm_draw_canvas *c, const mpm__draw_axes *a,
     if (names == 0) return;
     width = widest + 50 * u;
     height = names * row + 9 * u;
-    for (corner = 0; corner < 4; corner++) {
-        double left = corner % 2 ? a->left + gap : a->right - gap - width;
-        double top = corner / 2 ? a->bottom - gap - height : a->top + gap;
+    for (k = 0; k < 8; k++) {
+        double left = a->left + gap + place[k][0] * (a->right - a->left - 2 * gap - width);
+        double top = a->top + gap + place[k][1] * (a->bottom - a->top - 2 * gap - height);
         size_t hidden = mpm__draw_points_inside(d, a, left, top, width, height);
-        if (corner > 0 && hidden >= least) continue;
+        if (k > 0 && hidden >= least) continue;
         least = hidden;
         x = left;
         y = top;

@@ -8,7 +8,8 @@
    The loop in main() is the method, one call per phase. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "impact_history.h"
-#include "impact_restart.h"
+#include "impact_options.h"
+#include "restart.h"
 
 /* "al", or "al on cu". */
 static const char *metals(const impact *s, char *text, size_t n)
@@ -44,12 +45,13 @@ static int write_frame(const impact *s, const impact_case *c, output *o)
     return ok;
 }
 
-static int write_picture(const impact *s, const impact_case *c, output *o)
+static int write_pictures(const impact *s, const impact_case *c, output *o, const history *past)
 {
     output_picture p;
     int ok;
     describe_picture(s, c, o, &p);
-    ok = output_outline(&p, &s->world, &s->surfaces) && output_png(o, &p, "impact.png");
+    ok = output_outline(&p, &s->world, &s->surfaces) && output_png(o, &p, "impact.png") &&
+         impact_history_png(past, o->folder, p.title);
     free(p.outline);
     return ok;
 }
@@ -188,17 +190,16 @@ static void print_table(const impact *s, const impact_case *c, const impact_resu
 }
 
 /* Time integration: one call per phase. Returns 1; 0 after a message; -1 when stopped before, with a checkpoint. */
-static int run(impact *s, const impact_case *c, output *o, history *past, impact_stops *stops)
+static int run(impact *s, const impact_case *c, output *o, restart *again)
 {
     mpm_world *w = &s->world;
     int status = 1;
-    stop_listen();
     output_start(o, w);
     for (;;) {
-        if (history_due(past, w->steps, s->steps)) impact_history_sample(past, s);
+        if (history_due(again->past, w->steps, s->steps)) impact_history_sample(again->past, s);
         if (output_due(o, w, s->steps) && !write_frame(s, c, o)) return 0;
         if (w->steps >= s->steps) break;
-        if ((status = impact_goes_on(s, c, o, stops)) <= 0) break;
+        if ((status = restart_goes_on(again)) <= 0) break;
 
         if (s->surfaces.surfaces > 0) { /* contact on surfaces: mpm_surface.h */
             if (mpm_surface_step(&s->surfaces, w, s->dt) < 0) return report(&w->fault, "step");
@@ -226,28 +227,17 @@ static int run(impact *s, const impact_case *c, output *o, history *past, impact
     return status;
 }
 
-/* Begins the output, or goes on from the checkpoint in its folder. Returns 1, or 0 after a message. */
-static int start(impact *s, const impact_case *c, output *o, impact_stops *stops, int resume)
-{
-    char path[PATH_BYTES];
-    mpm_fault fault;
-    if (!resume) return output_begin(o);
-    if (impact_checkpoint(s, c, o, 0, file_in(o->folder, "checkpoint.bin", path, sizeof path), &fault) < 0)
-        return report(&fault, path);
-    impact_resumed(s, o);
-    stops->saved = o->cpu;
-    return 1;
-}
-
 /* Everything that is written at the end, or where the run is stopped. */
-static int finish(const impact *s, const impact_case *c, output *o, const history *past, const option *options, int n)
+static int finish(const impact *s, const impact_case *c, output *o, const history *past, const option *options,
+                  int n)
 {
     const impact_result r = impact_measure(s, c);
     if (!write_summary(s, &r, o, options, n) || !history_csv(past, o->folder)) return 0;
-    if (o->frames > 0 && !write_picture(s, c, o)) return 0;
+    if (o->frames > 0 && !write_pictures(s, c, o, past)) return 0;
     if (o->quiet) return 1;
     print_table(s, c, &r, o->cpu);
-    printf("\n  %s/summary.json%s\n", o->folder, o->frames > 0 ? ", impact.png, impact.pvd" : "");
+    printf("\n  %s/summary.json, history.csv%s\n", o->folder,
+           o->frames > 0 ? ", history.png, impact.png, impact.pvd" : "");
     return 1;
 }
 
@@ -259,29 +249,29 @@ static int carry_out(int argc, char **argv)
     option options[IMPACT_OPTIONS];
     int n = impact_options(&c, options);
     const char *about = "A metal particle hits a metal plate: material point method with bonding.\n"
-                        "Writes summary.json, impact.png, impact.pvd (ParaView) and frames into the output folder.";
-    impact_stops stops = {0, 0, 0};
-    char message[300], path[PATH_BYTES];
+                        "Writes summary.json, history.csv, impact.png, history.png, impact.pvd (ParaView) and frames into\n"
+                        "the output folder.";
+    char message[300];
+    restart again;
     history past;
     impact s;
-    int parsed, status, resume = 0;
+    int of_case = n, of_run, parsed, status;
+    memset(&again, 0, sizeof again);
     output_options(&o, options, &n);
-    option_add(options, &n, "checkpoint", OPTION_REAL, &stops.seconds,
-               "CPU seconds from one checkpoint.bin in the output folder to the next; 0: when stopped");
-    option_add(options, &n, "stop-after", OPTION_INTEGER, &stops.after,
-               "write one after so many steps and stop; 0: never");
-    option_add(options, &n, "resume", OPTION_FLAG, &resume, "go on from it, with the options that it was written with");
+    of_run = n;
+    restart_options(&again, options, &n);
     parsed = options_parse(argc, argv, about, options, n);
     if (parsed) return parsed < 0 ? 1 : 0;
     impact_complete(&c);
-    if (!output_check(&o, message, sizeof message) || !impact_stops_check(&stops, message, sizeof message) ||
+    if (!output_check(&o, message, sizeof message) || !restart_check(&again, message, sizeof message) ||
         !impact_begin(&s, &c, message, sizeof message))
         return !complain(message);
-    impact_history_begin(&past, &s);
-    status = start(&s, &c, &o, &stops, resume) ? run(&s, &c, &o, &past, &stops) : 0;
-    if (status != 0 && !finish(&s, &c, &o, &past, options, n)) status = 0;
+    impact_history_begin(&past, s.steps);
+    restart_describe(&again, &s.world, &s.surfaces, &o, &s.start, &past, s.dt, options, of_case);
+    status = restart_begin(&again, s.steps) ? run(&s, &c, &o, &again) : 0;
+    if (status != 0 && !finish(&s, &c, &o, &past, options, of_run)) status = 0;
     if (status < 0) print_again(argc, argv, "--resume", (long long)s.world.steps, (long long)s.steps);
-    if (status > 0) remove(file_in(o.folder, "checkpoint.bin", path, sizeof path));
+    if (status > 0) restart_end(&again);
     impact_end(&s);
     return status > 0 ? 0 : status < 0 ? STOPPED : 1;
 }

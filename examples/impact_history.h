@@ -31,10 +31,11 @@
 
 enum { IMPACT_HISTORY(HISTORY_NUMBER) IMPACT_HISTORY_COLUMNS };
 
-static inline void impact_history_begin(history *h, const impact *s)
+/* Of a run of so many steps. */
+static inline void impact_history_begin(history *h, int64_t steps)
 {
     static const history_column column[] = {IMPACT_HISTORY(HISTORY_COLUMN)};
-    history_begin(h, column, IMPACT_HISTORY_COLUMNS, s->steps);
+    history_begin(h, column, IMPACT_HISTORY_COLUMNS, steps);
 }
 
 /* Energies, from the sums over all bodies. */
@@ -50,19 +51,6 @@ static inline void impact_history_energy(const impact *s, const mpm_totals *all,
     row[IMPACT_WALLS] = whole * l->walls;
     row[IMPACT_UNACCOUNTED] = whole * (all->kinetic + all->internal + l->absorbed + l->contact + l->hold + l->walls -
                                        s->start.kinetic - s->start.internal);
-}
-
-/* sum of m (v - mean)^2 of a body, along z */
-static inline double impact_history_noise(const mpm_world *w, int32_t body, double mean)
-{
-    const mpm_body *b = &w->body[body];
-    double sum = 0;
-    int32_t i;
-    for (i = b->first; i < b->first + b->count; i++) {
-        const double v = (double)w->points.v[2][i] - mean;
-        sum += (double)w->points.mass[i] * v * v;
-    }
-    return sum;
 }
 
 /* How the particles touch: areas, and G or D of what touched on the mean. */
@@ -86,23 +74,6 @@ static inline void impact_history_meeting(const impact *s, double whole, double 
     }
     row[IMPACT_G] = case_share(row[IMPACT_G], row[IMPACT_AREA]);
     row[IMPACT_ABP] = case_share(row[IMPACT_ABP], row[IMPACT_AREA]);
-}
-
-/* The largest stresses of all points: equivalent, and pressure, at least 0. */
-static inline void impact_history_stress(const mpm_points *p, double *mises, double *pressure)
-{
-    double most = 0, deepest = 0;
-    int32_t i;
-    for (i = 0; i < p->count; i++) {
-        const double xx = (double)p->stress[0][i], yy = (double)p->stress[1][i], zz = (double)p->stress[2][i];
-        const double yz = (double)p->stress[3][i], xz = (double)p->stress[4][i], xy = (double)p->stress[5][i];
-        const double square = ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) / 2 +
-                              3 * (yz * yz + xz * xz + xy * xy);
-        if (square > most) most = square;
-        if (-(xx + yy + zz) > deepest) deepest = -(xx + yy + zz);
-    }
-    *mises = sqrt(most);
-    *pressure = deepest / 3;
 }
 
 /* Adds what a body adds to the sums over all. */
@@ -130,7 +101,7 @@ static inline void impact_history_sample(history *h, const impact *s)
         row[a < w->bodies - 1 ? IMPACT_MOMENTUM : IMPACT_MOMENTUM_BELOW] += whole * t.momentum[2];
         if (a == w->bodies - 1) continue;
         mass += t.mass;
-        noise += impact_history_noise(w, a, t.momentum[2] / t.mass);
+        noise += history_spread(w, a, t.momentum[2] / t.mass);
     }
     impact_history_energy(s, &all, whole, row);
     impact_history_meeting(s, whole, row);
@@ -138,7 +109,26 @@ static inline void impact_history_sample(history *h, const impact *s)
     row[IMPACT_V_NOISE] = sqrt(noise / mass);
     row[IMPACT_FORCE] = 1e3 * history_rate(h, IMPACT_MOMENTUM); /* ng m/s per ns */
     row[IMPACT_HOT] = all.temperature_max;
-    impact_history_stress(&w->points, &row[IMPACT_MISES], &row[IMPACT_PRESSURE]);
+    history_stress(&w->points, &row[IMPACT_MISES], &row[IMPACT_PRESSURE]);
+}
+
+/* Its picture: of the bond G on surfaces, and D at nodes. */
+static inline int impact_history_png(const history *h, const char *folder, const char *title)
+{
+    const int bond = history_says(h, IMPACT_G) ? IMPACT_G : IMPACT_ABP;
+    history_panel panel[8] = {
+        {"energy", {IMPACT_KINETIC, IMPACT_ELASTIC, IMPACT_PLASTIC, IMPACT_ABSORBED, IMPACT_CONTACT, IMPACT_BOND,
+                    IMPACT_WALLS, IMPACT_UNACCOUNTED, -1}},
+        {"velocity of the particle", {IMPACT_V_MEAN, IMPACT_V_NOISE, -1}},
+        {"momentum", {IMPACT_MOMENTUM, IMPACT_MOMENTUM_BELOW, -1}},
+        {"contact force", {IMPACT_FORCE, -1}},
+        {"area", {IMPACT_AREA, IMPACT_BONDED, -1}},
+        {"bond: mean D of what touched", {IMPACT_ABP, -1}},
+        {"highest temperature", {IMPACT_HOT, -1}},
+        {"largest stress", {IMPACT_MISES, IMPACT_PRESSURE, -1}}};
+    panel[5].column[0] = bond;
+    if (bond == IMPACT_G) panel[5].title = "dissipation G of what touched";
+    return history_png(h, folder, panel, 8, title);
 }
 
 #endif

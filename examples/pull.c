@@ -15,6 +15,7 @@
 
    The loop in draw() is the method with a grip in it. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
+#include "impact_history.h"
 #include "impact_options.h"
 #include "output.h"
 
@@ -95,7 +96,7 @@ static mpm_status hold(impact *s, mpm_pull *p)
 }
 
 /* Draws the bodies apart until they have parted or the way is done, a row of the table per sample. */
-static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, curve *c)
+static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, curve *c, history *past)
 {
     mpm_world *w = &s->world;
     const int whole = impact_copies(s);
@@ -104,6 +105,7 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
     progress_begin(&line, o->quiet);
     do {
         progress_part(&line, "pull, if they do not part before:", p->separation / o->distance);
+        if (history_due(past, w->steps, INT64_MAX)) impact_history_sample(past, s);
         if (mpm_locate(w, s->dt) < 0) return report(&w->fault, "locate");
         mpm_calm(w);
         mpm_p2g(w);
@@ -207,12 +209,20 @@ static int write_summary(const impact *s, const pull_case *o, const impact_resul
     return mpm_io_json_end(&j, &fault) >= 0 || report(&fault, path);
 }
 
+/* The history of both, which ends when the grip's way is done; or before, when the bodies part. */
+static void remember(history *past, const impact *s, const pull_case *o)
+{
+    const double ns = o->ramp + o->distance / o->velocity * 1e3;
+    impact_history_begin(past, s->steps + (int64_t)(ns * 1e-3 / (double)s->dt));
+}
+
 /* The impact. Returns 1, or 0 after a message. */
-static int strike(impact *s, const pull_case *o)
+static int strike(impact *s, const pull_case *o, history *past)
 {
     progress line;
     progress_begin(&line, o->quiet);
     while (s->world.steps < s->steps) {
+        if (history_due(past, s->world.steps, INT64_MAX)) impact_history_sample(past, s);
         if (impact_step(s) < 0) return report(&s->world.fault, "impact");
         progress_part(&line, "impact", (double)s->world.steps / (double)s->steps);
     }
@@ -228,9 +238,11 @@ static int run(impact *s, const impact_case *ic, const pull_case *o, curve *c, c
     mpm_io_csv table;
     mpm_fault fault;
     mpm_pull p;
+    history past;
     char path[PATH_BYTES], grip[80];
     int drawn;
-    if (!strike(s, o)) return 0;
+    remember(&past, s, o);
+    if (!strike(s, o, &past)) return 0;
     r = impact_measure(s, ic);
     met = meet(s);
     memset(&p, 0, sizeof p);
@@ -240,13 +252,14 @@ static int run(impact *s, const impact_case *ic, const pull_case *o, curve *c, c
                          "time_ns,way_um,force_uN,grip_force_uN,stress_MPa,nodes_met,nodes_bonded,nodes_held",
                          "pull: forces of the whole particle", &fault) < 0)
         return report(&fault, path);
-    drawn = met.area > 0 ? draw(s, o, &p, &table, c) : 1; /* without contact the particle has left: strength 0 */
+    drawn = met.area > 0 ? draw(s, o, &p, &table, c, &past) : 1; /* without contact the particle has left: strength 0 */
     if (mpm_io_csv_end(&table, &fault) < 0) return report(&fault, path);
     if (!drawn) return 0;
     if (!write_summary(s, o, &r, &met, &p, options, n) || !write_picture(s, ic, o, &p, c)) return 0;
+    if (!history_csv(&past, o->folder) || !impact_history_png(&past, o->folder, "impact and pull")) return 0;
     if (!o->quiet)
         printf("strength %.4g MPa: %.4g uN over %.4g um2 of contact (%.4g um2 at bonded nodes)\n"
-               "PBCP %.3g %%, work %.4g pJ over %.3g um; see %s/summary.json, pull.csv, pull.png\n",
+               "PBCP %.3g %%, work %.4g pJ over %.3g um; see %s/summary.json, pull.csv, pull.png, history.csv\n",
                p.peak_stress, p.peak_force * impact_copies(s), met.area * impact_copies(s),
                met.bonded_area * impact_copies(s), r.bond.pbcp, p.work * impact_copies(s), p.separation, o->folder);
     return 1;

@@ -4,13 +4,14 @@
    80 um, size shape 5, fed 50 per 0.5 ms into a jet of 50 m/s, released at 0 to 50 m/s, target at
    0.30 m. Expect about 76 % deposited at alpha 1e5 and an impact speed of about 29 m/s; it takes
    less than a minute. Everything goes into --out: summary.json, impacts.csv (one row per first
-   impact: what is needed to simulate the impacts themselves), a VTK series, and two pictures.
+   impact: what is needed to simulate the impacts themselves), history.csv, a VTK series, and three pictures.
    SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "mpm_spray.h"
 #include "mpm_io.h"
 
 #include "program.h"
+#include "spray_history.h"
 #include "spray_view.h"
 #include "terminal.h"
 
@@ -348,26 +349,32 @@ typedef struct files {
     int64_t since, every; /* the frames of all steps above `since` that `every` divides; every 0: of none */
 } files;
 
-static int spray_blobs(mpm_spray *s, files *past, mpm_blob blob[MPM_SPRAY_BLOBS + 1])
+#define BLOBS (MPM_SPRAY_BLOBS + HISTORY_BLOBS + 1)
+
+static int spray_blobs(mpm_spray *s, files *past, history *h, mpm_blob blob[BLOBS])
 {
-    const int n = mpm_spray_blobs(s, blob);
+    int n = mpm_spray_blobs(s, blob);
+    n += history_blobs(h, blob + n);
     blob[n] = mpm_blob_of("files beside it", past, sizeof *past);
     return n + 1;
 }
 
-static mpm_status write_checkpoint(const char *path, mpm_spray *s, files *past, const option *o, int options,
-                                   mpm_fault *fault)
+static mpm_status write_checkpoint(const char *path, mpm_spray *s, files *past, history *h, const option *o,
+                                   int options, mpm_fault *fault)
 {
-    mpm_blob blob[MPM_SPRAY_BLOBS + 1];
-    return mpm_io_checkpoint_write(path, spray_text(o, options), blob, spray_blobs(s, past, blob), fault);
+    mpm_blob blob[BLOBS];
+    return mpm_io_checkpoint_write(path, spray_text(o, options), blob, spray_blobs(s, past, h, blob), fault);
 }
 
-static mpm_status read_checkpoint(const char *path, mpm_spray *s, files *past, const option *o, int options,
-                                  mpm_fault *fault)
+static mpm_status read_checkpoint(const char *path, mpm_spray *s, files *past, history *h, const option *o,
+                                  int options, mpm_fault *fault)
 {
-    mpm_blob blob[MPM_SPRAY_BLOBS + 1];
-    mpm_status status = mpm_io_checkpoint_read(path, spray_text(o, options), blob, spray_blobs(s, past, blob), fault);
+    mpm_blob blob[BLOBS];
+    const int n = spray_blobs(s, past, h, blob);
+    mpm_status status = mpm_io_checkpoint_read(path, spray_text(o, options), blob, n, fault);
     if (status >= 0 && (status = mpm_spray_restored(s, blob)) < 0) *fault = s->fault;
+    if (status >= 0 && !history_whole(h))
+        status = mpm_fail(fault, MPM_ERR_ARGUMENT, "history rows", (mpm_real)h->rows, -1);
     return status;
 }
 
@@ -576,6 +583,7 @@ static mpm_status write_summary(const char *folder, const result *r, int count, 
 typedef struct records {
     mpm_io_csv *impacts;
     files *past;
+    history *history;
     const option *row;
     int rows;
     const char *note;
@@ -588,7 +596,7 @@ static mpm_status save(mpm_spray *s, const settings *o, const records *r, mpm_fa
     mpm_status status = mpm_io_csv_end(r->impacts, fault);
     if (status >= 0) status = note_impacts(r->past, o, s, fault);
     file_in(o->out, "checkpoint.bin", path, sizeof path);
-    if (status >= 0) status = write_checkpoint(path, s, r->past, r->row, r->rows, fault);
+    if (status >= 0) status = write_checkpoint(path, s, r->past, r->history, r->row, r->rows, fault);
     if (status < 0 || begin_impacts(r->impacts, o, s, r->past, r->note)) return status;
     return mpm_fail(fault, MPM_ERR_FILE, "impacts.csv: cannot be begun again", 0, -1);
 }
@@ -623,10 +631,12 @@ static mpm_status run(mpm_spray *s, const settings *o, int64_t steps, spray_colu
     double saved = 0;
     stop_listen();
     progress_begin(&line, o->quiet);
+    if (history_due(r->history, first, 0)) spray_history_sample(r->history, s);
     while (s->tally.step < steps && status >= 0 && !stop_asked()) {
         int64_t step;
         if ((status = mpm_spray_step(s)) < 0) *fault = s->fault;
         step = s->tally.step;
+        if (status >= 0 && history_due(r->history, step, 0)) spray_history_sample(r->history, s);
         if (status >= 0 && (step % every == 0 || (step == steps && o->frames > 0))) {
             *cpu += seconds(begin);
             status = write_frame(o->out, s, c, r->note, fault);
@@ -660,6 +670,15 @@ static void describe_in_words(const option *o, int n, char *note, size_t room)
     }
 }
 
+/* history.csv and history.png. Returns 1, or 0 after a message. */
+static int write_history(const mpm_spray *s, const settings *o, const history *past)
+{
+    const history all = spray_history_end(past, s);
+    char title[100];
+    snprintf(title, sizeof title, "median radius %g um, gas at %g m/s", o->median_radius, o->speed);
+    return history_csv(&all, o->out) && spray_history_png(&all, o->out, title);
+}
+
 static mpm_status write_all(mpm_spray *s, const settings *o, const records *of, spray_columns *c, int64_t before,
                             double cpu, mpm_fault *fault)
 {
@@ -670,7 +689,7 @@ static mpm_status write_all(mpm_spray *s, const settings *o, const records *of, 
     if (status >= 0) status = write_pictures(o->out, s, c, of->note, fault);
     if (status >= 0) status = note_impacts(of->past, o, s, fault);
     file_in(o->out, "checkpoint.bin", path, sizeof path);
-    if (status >= 0) status = write_checkpoint(path, s, of->past, of->row, of->rows, fault);
+    if (status >= 0) status = write_checkpoint(path, s, of->past, of->history, of->row, of->rows, fault);
     if (status < 0 || o->quiet) return status;
     for (k = 0; k < n; k++) printf("%-44s %14.6g %s\n", r[k].text, r[k].value, r[k].unit);
     printf("%-44s %14.6g %s\n", "memory", (double)s->bytes / 1e6, "MB");
@@ -693,6 +712,7 @@ static int carry_out(int argc, char **argv)
     files past = {0, 0, 0};
     char path[PATH_BYTES];
     spray_columns columns;
+    history past_rows;
     records of;
     mpm_status status;
     int64_t before, steps = 0;
@@ -705,7 +725,8 @@ static int carry_out(int argc, char **argv)
     d.touch_user = &impacts;
     describe_in_words(row, rows, note, sizeof note);
     if (mpm_spray_init(&s, &d, NULL, 0) < 0) return failed(&s.fault);
-    if (o.restart[0] && read_checkpoint(o.restart, &s, &past, row, rows, &fault) < 0) {
+    spray_history_begin(&past_rows);
+    if (o.restart[0] && read_checkpoint(o.restart, &s, &past, &past_rows, row, rows, &fault) < 0) {
         fprintf(stderr, "error: --restart %s\n", o.restart);
         return failed(&fault);
     }
@@ -718,11 +739,13 @@ static int carry_out(int argc, char **argv)
     if (!begin_files(&impacts, &o, &s, &past, steps, note)) return 1;
     of.impacts = &impacts;
     of.past = &past;
+    of.history = &past_rows;
     of.row = row;
     of.rows = rows;
     of.note = note;
     status = run(&s, &o, steps, &columns, &of, &cpu, &fault);
     if (mpm_io_csv_end(&impacts, status < 0 ? NULL : &fault) < 0 && status >= 0) return failed(&fault);
+    if (status >= 0 && !write_history(&s, &o, &past_rows)) return 1;
     if (status >= 0) status = write_all(&s, &o, &of, &columns, before, cpu, &fault);
     if (status < 0) failed(&fault);
     stopped = status >= 0 && s.tally.step < steps;

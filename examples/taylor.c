@@ -8,7 +8,7 @@
 
    The loop in run() is the method, one call per phase. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
-#include "taylor_case.h"
+#include "taylor_history.h"
 #include "restart.h"
 
 /* Plastic strain and temperature of the section through the axis. */
@@ -33,11 +33,11 @@ static int write_frame(const taylor *s, const taylor_case *c, output *o)
     return output_frame(o, w, start, 2, &p);
 }
 
-static int write_picture(const taylor *s, const taylor_case *c, output *o)
+static int write_pictures(const taylor *s, const taylor_case *c, output *o, const history *past)
 {
     output_picture p;
     describe_picture(s, c, o, &p);
-    return output_png(o, &p, "taylor.png");
+    return output_png(o, &p, "taylor.png") && taylor_history_png(past, o->folder, p.title);
 }
 
 static int write_profile(const taylor *s, const taylor_row *row, const output *o)
@@ -112,6 +112,7 @@ static int run(taylor *s, const taylor_case *c, output *o, restart *again)
     int status = 1;
     output_start(o, w);
     for (;;) {
+        if (history_due(again->past, w->steps, s->steps) && !taylor_history_sample(again->past, s, c)) return 0;
         if (output_due(o, w, s->steps) && !write_frame(s, c, o)) return 0;
         if (w->steps >= s->steps) break;
         if ((status = restart_goes_on(again)) <= 0) break;
@@ -133,17 +134,19 @@ static int run(taylor *s, const taylor_case *c, output *o, restart *again)
 }
 
 /* Everything that is written at the end, or where the run is stopped. */
-static int finish(const taylor *s, const taylor_case *c, output *o, const option *options, int n)
+static int finish(const taylor *s, const taylor_case *c, output *o, const history *past, const option *options,
+                  int n)
 {
     taylor_row *row = (taylor_row *)malloc((size_t)taylor_rows(s) * sizeof *row);
     taylor_result r;
     int ok = row && taylor_measure(s, c, row, &r);
     if (!ok) complain("no memory for the profile");
-    ok = ok && write_summary(s, &r, o, options, n) && write_profile(s, row, o);
-    if (ok && o->frames > 0) ok = write_picture(s, c, o);
+    ok = ok && write_summary(s, &r, o, options, n) && write_profile(s, row, o) && history_csv(past, o->folder);
+    if (ok && o->frames > 0) ok = write_pictures(s, c, o, past);
     if (ok && !o->quiet) {
         print_table(s, c, &r, o->cpu);
-        printf("\n  %s/summary.json, profile.csv%s\n", o->folder, o->frames > 0 ? ", taylor.png, taylor.pvd" : "");
+        printf("\n  %s/summary.json, profile.csv, history.csv%s\n", o->folder,
+               o->frames > 0 ? ", history.png, taylor.png, taylor.pvd" : "");
     }
     free(row);
     return ok;
@@ -173,11 +176,13 @@ static int carry_out(int argc, char **argv)
 {
     taylor_case c = taylor_case_default();
     output o = output_of("build/taylor-out", "taylor", "mm", "us", 1e-3);
-    option options[20];
+    option options[24];
     restart again;
+    history past;
     int n = options_of(&c, options), of_case = n, of_run, parsed, status;
     const char *about = "A metal cylinder hits a rigid wall end on: Taylor's test.\n"
-                        "Writes summary.json, profile.csv, taylor.png, taylor.pvd (ParaView) and frames.";
+                        "Writes summary.json, profile.csv, history.csv, taylor.png, history.png, taylor.pvd (ParaView)\n"
+                        "and frames.";
     char message[300];
     taylor s;
     memset(&again, 0, sizeof again);
@@ -189,8 +194,10 @@ static int carry_out(int argc, char **argv)
     if (!output_check(&o, message, sizeof message) || !restart_check(&again, message, sizeof message) ||
         !taylor_begin(&s, &c, message, sizeof message))
         return !complain(message);
-    status = restart_begin(&again, &s.world, &o, &s.start, s.dt, options, of_case) ? run(&s, &c, &o, &again) : 0;
-    if (status != 0 && !finish(&s, &c, &o, options, of_run)) status = 0;
+    taylor_history_begin(&past, &s);
+    restart_describe(&again, &s.world, NULL, &o, &s.start, &past, s.dt, options, of_case);
+    status = restart_begin(&again, s.steps) ? run(&s, &c, &o, &again) : 0;
+    if (status != 0 && !finish(&s, &c, &o, &past, options, of_run)) status = 0;
     if (status < 0) print_again(argc, argv, "--resume", (long long)s.world.steps, (long long)s.steps);
     if (status > 0) restart_end(&again);
     mpm_free(&s.world);

@@ -4,10 +4,12 @@
 #ifndef PARTICLES_CASE_H
 #define PARTICLES_CASE_H
 
-#include "impact_restart.h"
+#include "impact_history.h"
+#include "impact_options.h"
+#include "restart.h"
 #include "study.h"
 
-#define PARTICLES (IMPACT_BODIES - 1) /* the last body is the substrate */
+#define PARTICLES (RESTART_BODIES - 1) /* the last body is the substrate */
 
 typedef struct particles_case {
     impact_case base;            /* of every particle; its gap is not used */
@@ -324,6 +326,14 @@ static inline void particles_report(const impact *s, const particles_case *q, pa
 
 /* ---- files --------------------------------------------------------------------------------- */
 
+/* "2 x al-thesis, 14 um at 810 m/s" */
+static inline const char *particles_title(const particles_case *q, char *text, size_t n)
+{
+    snprintf(text, n, "%lld x %s, %g um at %g m/s", (long long)q->count, q->base.material, q->base.diameter,
+             q->base.velocity);
+    return text;
+}
+
 /* A frame: cuts through x-z at y = 0 with plastic strain and bodies; for ParaView also whom a point bonds to. */
 static inline int particles_frame(const impact *s, particles_case *q)
 {
@@ -345,8 +355,7 @@ static inline int particles_frame(const impact *s, particles_case *q)
     output_cuts(&q->out, &s->world, q->base.spacing, NULL, &picture);
     output_window(&picture, 1.05 * edge, -1.05 * q->base.substrate_height, 1.05 * top);
     picture.cut[1].title = "bodies";
-    snprintf(picture.title, sizeof picture.title, "%lld x %s, %g um at %g m/s", (long long)q->count,
-             q->base.material, q->base.diameter, q->base.velocity);
+    particles_title(q, picture.title, sizeof picture.title);
     ok = output_outline(&picture, &s->world, &s->surfaces) && output_surfaces(&q->out, &s->world, &s->surfaces) &&
          output_frame(&q->out, &s->world, &field, 1, &picture);
     free(picture.outline);
@@ -426,6 +435,14 @@ static inline double particles_pbcp(const impact *s, const particles_case *q)
     return 100 * case_share(bonded, touched);
 }
 
+/* history.csv, and history.png if pictures are wanted */
+static inline int particles_history(const particles_case *q, const history *past)
+{
+    char title[160];
+    return history_csv(past, q->out.folder) &&
+           (q->out.frames == 0 || impact_history_png(past, q->out.folder, particles_title(q, title, sizeof title)));
+}
+
 /* The checksum of both tables, which the summary keeps. */
 static inline const char *particles_sum(const particles_case *q, char sum[HASH_DIGITS])
 {
@@ -487,8 +504,8 @@ static inline void particles_print(const particles_case *q, const particle_repor
         printf("  %8lld   %-11s   %6.2f   %10.3f   %7.2f   %9.2f   %9.1f\n", (long long)k,
                particle_fate_text[r[k].fate], r[k].met.pbcp, r[k].met.area, r[k].v_z, r[k].v_along,
                100 * r[k].ejected);
-    printf("\n  PBCP of all surfaces %.2f %%; %s/particles.csv, pairs.csv, summary.json%s\n", particles_pbcp(s, q),
-           q->out.folder, q->out.frames > 0 ? ", particles.pvd" : "");
+    printf("\n  PBCP of all surfaces %.2f %%; %s/particles.csv, pairs.csv, history.csv, summary.json%s\n",
+           particles_pbcp(s, q), q->out.folder, q->out.frames > 0 ? ", history.png, particles.pvd" : "");
 }
 
 /* Whether a summary is of this version and number type; one that does not name the type is of double. */
@@ -562,15 +579,15 @@ static inline int particles_done(const particles_case *q)
 #define PARTICLES_CHECKPOINT 60 /* CPU seconds from one to the next */
 
 /* Goes on where an earlier run of this scene was left, or begins the output. Returns 1, or 0 after a message. */
-static inline int particles_resume(impact *s, particles_case *q)
+static inline int particles_resume(const impact *s, particles_case *q, restart *again)
 {
     char path[PATH_BYTES], text[200];
     mpm_fault fault;
     const int found = is_there(file_in(q->out.folder, "checkpoint.bin", path, sizeof path));
     if (found < 0) return 0; /* what it holds must not be lost */
     if (found) {
-        if (impact_checkpoint(s, &q->base, &q->out, 0, path, &fault) >= 0) {
-            impact_resumed(s, &q->out);
+        if (restart_read(again, path, &fault) >= 0) {
+            restart_said(again, s->steps);
             return 1;
         }
         if (s->world.points.count == 0 || s->world.steps > 0) return report(&fault, path);
@@ -584,17 +601,17 @@ static inline int particles_resume(impact *s, particles_case *q)
 /* ---- main ---------------------------------------------------------------------------------- */
 
 /* Steps to the end. Returns 1; 0 after a message; -1 when stopped before, with a checkpoint. */
-static inline int particles_run(impact *s, particles_case *q)
+static inline int particles_run(impact *s, particles_case *q, restart *again)
 {
     const mpm_world *w = &s->world;
-    impact_stops stops = {PARTICLES_CHECKPOINT, q->stop_after, q->out.cpu};
     int status = 1;
     stop_listen();
     output_start(&q->out, w);
     for (;;) {
+        if (history_due(again->past, w->steps, s->steps)) impact_history_sample(again->past, s);
         if (output_due(&q->out, w, s->steps) && !particles_frame(s, q)) return 0;
         if (w->steps >= s->steps) break;
-        if ((status = impact_goes_on(s, &q->base, &q->out, &stops)) <= 0) break;
+        if ((status = restart_goes_on(again)) <= 0) break;
         if (impact_step(s) < 0) return report(&w->fault, "step");
         output_progress(&q->out, w, s->steps);
     }
@@ -603,23 +620,40 @@ static inline int particles_run(impact *s, particles_case *q)
     return status;
 }
 
+/* What a checkpoint of the scene is of. */
+static inline void particles_again(restart *again, impact *s, particles_case *q, history *past)
+{
+    impact_case base = q->base;
+    option o[IMPACT_OPTIONS];
+    const int n = impact_options(&base, o);
+    memset(again, 0, sizeof *again);
+    again->every = PARTICLES_CHECKPOINT;
+    again->after = q->stop_after;
+    impact_history_begin(past, s->steps);
+    restart_describe(again, &s->world, &s->surfaces, &q->out, &s->start, past, s->dt, o, n);
+}
+
 /* The rest of main(): runs the scene and writes everything. Returns 0; 1 after a message; 3 when stopped. */
 static inline int particles_main(particles_case *q, const option *o, int n)
 {
     static particle_report r[PARTICLES];
-    char message[400], path[PATH_BYTES];
+    char message[400];
+    restart again;
+    history past;
     impact s;
     int status;
     if (!particles_begin(&s, q, message, sizeof message)) return !complain(message);
-    status = particles_resume(&s, q) ? particles_run(&s, q) : 0;
+    particles_again(&again, &s, q, &past);
+    status = particles_resume(&s, q, &again) ? particles_run(&s, q, &again) : 0;
     if (status < 0)
         printf("stopped at step %lld of %lld; run again to go on\n", (long long)s.world.steps, (long long)s.steps);
     if (status > 0) {
         particles_report(&s, q, r);
-        status = particles_table(q, r) && particles_pairs(&s, q) && particles_summary(&s, q, r, o, n);
+        status = particles_table(q, r) && particles_pairs(&s, q) && particles_history(q, &past) &&
+                 particles_summary(&s, q, r, o, n);
     }
     if (status > 0) {
-        remove(file_in(q->out.folder, "checkpoint.bin", path, sizeof path));
+        restart_end(&again);
         if (!q->out.quiet) particles_print(q, r, &s);
     }
     impact_end(&s);

@@ -1,4 +1,4 @@
-/* mpm_draw.h - pictures for mpm.h: canvas, text, axes, cuts, scatter plots, curves.
+/* mpm_draw.h - pictures for mpm.h: canvas, text, axes, cuts, solids, scatter plots, curves.
    Version 0.2.0. SPDX-License-Identifier: MIT
 
    DO THIS
@@ -9,9 +9,9 @@
      film or a file (mpm_io_png of mpm_io.h writes them as they are). Link with -lm.
 
    WHAT IT DOES NOT DO
-     It writes no files. It draws cuts, scatter plots and curves, not surfaces or perspective: for
-     those write .vtu files and open them in ParaView. It never prints, never exits, and keeps no
-     global state.
+     It writes no files. It draws cuts, solids, scatter plots and curves, without perspective and without
+     glass: for those write .vtu files and open them in ParaView. It never prints, never exits, and keeps
+     no global state.
 
    A COMPLETE PROGRAM
        #define MPM_IMPLEMENTATION
@@ -37,10 +37,10 @@
      primitives    mpm_draw_fill, _rectangle, _line, _disc, _text, _text_width
      colours       mpm_draw_map_color, _series_color
      numbers       mpm_draw_number, _nice, _ticks
-     figures       mpm_draw_tile, _color_bar, _cut, _cuts, _scatter, _plot
+     figures       mpm_draw_tile, _color_bar, _cut, _cuts, _solid, _scatter, _plot
 
    CONFIGURATION: that of mpm.h (MPM_FLOAT, MPM_STATIC, MPM_MALLOC, MPM_FREE). Memory is taken for a
-   canvas without any of its own, and inside _cut and _scatter while they draw.
+   canvas without any of its own, and inside _cut, _solid and _scatter while they draw.
 
    CONVENTIONS
      Text is UTF-8. Pixels are counted from the top left; pixel (i, j) covers [i, i+1) x [j, j+1).
@@ -75,6 +75,9 @@
 #define mpm_draw_cut_of mpm_draw_cut_of_f32
 #define mpm_draw_cut mpm_draw_cut_f32
 #define mpm_draw_cuts mpm_draw_cuts_f32
+#define mpm_draw_solid_desc_default mpm_draw_solid_desc_default_f32
+#define mpm_draw_solid_of mpm_draw_solid_of_f32
+#define mpm_draw_solid mpm_draw_solid_f32
 #define mpm_draw_scatter_desc_default mpm_draw_scatter_desc_default_f32
 #define mpm_draw_scatter mpm_draw_scatter_f32
 #define mpm_draw_plot_desc_default mpm_draw_plot_desc_default_f32
@@ -224,6 +227,39 @@ MPM_API mpm_status mpm_draw_cut(mpm_draw_canvas *c, mpm_draw_rect where, const m
    pixels wide and as high as the windows ask for. On failure there is nothing to free. Test: 41_draw "cut". */
 MPM_API mpm_status mpm_draw_cuts(mpm_draw_canvas *c, const mpm_draw_cut_desc *cuts, int count, int columns,
                                  int panel_width, mpm_fault *fault);
+
+/* Bodies in space, seen from afar without perspective: triangles, or a ball at every place. What is nearer hides what
+   is behind it. The colour of the value is dimmed by Lambert's law: 0.35 + 0.65 cos of the angle between the normal and
+   the light, which comes over the left shoulder: -0.40 to the right, 0.55 upwards, 0.73 from the eye. */
+typedef struct mpm_draw_solid_desc {
+    unsigned mark;           /* set by mpm_draw_solid_desc_default */
+    size_t count;            /* places */
+    const mpm_real *x[3];    /* [length] */
+    const mpm_real *value;   /* colour, of each place; NULL colours by body */
+    const int32_t *body;     /* body numbers; NULL: one body */
+    const mpm_world *world;  /* the world of these places, if they are its points: body numbers and sizes come from
+                                it and retired points are left out; or NULL */
+    double size;             /* diameter of a ball [length]; 0: 1.3 times the spacing of the point's body */
+    size_t triangles;        /* between the places; 0: balls */
+    const int32_t (*triangle)[3]; /* their corners; either side may be in front */
+    int mirror[3];           /* 1: also the images in x = 0, y = 0, z = 0 */
+    double turn, lift;       /* where the eye is: degrees about z, from -y towards x; degrees above the horizon */
+    double box[6];           /* xmin, xmax, ymin, ymax, zmin, zmax that has to be seen [length]; all 0: all there is */
+    mpm_draw_map map;
+    double scale;            /* multiplies the value */
+    double low, high;        /* colour range, of the scaled value; equal: fit to what is seen */
+    const char *label, *title, *time, *length_unit; /* as for the cut */
+} mpm_draw_solid_desc;
+
+/* From 30 degrees to the right and 25 above, scale 1; count, x and size or triangles must be set ...
+   Test: 41_draw "solid". */
+MPM_API mpm_draw_solid_desc mpm_draw_solid_desc_default(void);
+/* ... or taken from a world, whose points are balls then. Its mirrors are the world's. Test: 41_draw "solid". */
+MPM_API mpm_draw_solid_desc mpm_draw_solid_of(const mpm_world *world, const mpm_real *value);
+/* MPM_ERR_ARGUMENT (the fault names the field) when something needed is missing or not finite, MPM_ERR_MEMORY.
+   Test: 41_draw "solid". */
+MPM_API mpm_status mpm_draw_solid(mpm_draw_canvas *c, mpm_draw_rect where, const mpm_draw_solid_desc *d,
+                                  mpm_fault *fault);
 
 /* Discs in a plane, coloured by value: plumes, deposit patterns, correlations. */
 typedef struct mpm_draw_scatter_desc {
@@ -1649,6 +1685,417 @@ MPM_API mpm_status mpm_draw_cuts(mpm_draw_canvas *c, const mpm_draw_cut_desc *cu
         status = mpm_draw_cut(c, mpm_draw_tile(c, columns, rows, i), &cuts[i], fault);
     if (status < 0) mpm_draw_canvas_free(c);
     return status;
+}
+
+/* ---- solids -------------------------------------------------------------------------------- */
+
+MPM_API mpm_draw_solid_desc mpm_draw_solid_desc_default(void)
+{
+    mpm_draw_solid_desc d;
+    memset(&d, 0, sizeof d);
+    d.mark = MPM_MARK;
+    d.turn = 30;
+    d.lift = 25;
+    d.scale = 1;
+    return d;
+}
+
+MPM_API mpm_draw_solid_desc mpm_draw_solid_of(const mpm_world *world, const mpm_real *value)
+{
+    mpm_draw_solid_desc d = mpm_draw_solid_desc_default();
+    int k;
+    d.world = world;
+    d.count = (size_t)world->points.count;
+    for (k = 0; k < 3; k++) {
+        d.x[k] = world->points.x[k];
+        d.mirror[k] = world->desc.side[2 * k] == MPM_SIDE_SYMMETRY;
+    }
+    d.value = value;
+    return d;
+}
+
+static inline mpm_status mpm__draw_solid_check(const mpm_draw_solid_desc *d, mpm_fault *fault)
+{
+    size_t i;
+    int k;
+    if (d->mark != MPM_MARK)
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "desc (not from mpm_draw_solid_desc_default)", (mpm_real)d->mark, -1);
+    if (d->count < 1 || !d->x[0] || !d->x[1] || !d->x[2])
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "places of the solid", (mpm_real)d->count, -1);
+    if (d->triangles > 0 && !d->triangle) return mpm_fail(fault, MPM_ERR_ARGUMENT, "triangle", 0, -1);
+    if (!(d->size >= 0 && d->size < 1e300) || (d->triangles == 0 && !(d->size > 0) && !d->world))
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "size of the balls", (mpm_real)d->size, -1);
+    if (!(fabs(d->turn) < 1e6)) return mpm_fail(fault, MPM_ERR_ARGUMENT, "turn", (mpm_real)d->turn, -1);
+    if (!(fabs(d->lift) < 1e6)) return mpm_fail(fault, MPM_ERR_ARGUMENT, "lift", (mpm_real)d->lift, -1);
+    for (i = 0; i < d->triangles; i++)
+        for (k = 0; k < 3; k++)
+            if (d->triangle[i][k] < 0 || (size_t)d->triangle[i][k] >= d->count)
+                return mpm_fail(fault, MPM_ERR_ARGUMENT, "corner of a triangle", (mpm_real)d->triangle[i][k],
+                                (int64_t)i);
+    return MPM_OK;
+}
+
+/* To the right, upwards and to the eye, as unit vectors. */
+static inline void mpm__draw_view(const mpm_draw_solid_desc *d, double to[3][3])
+{
+    const double turn = d->turn * (double)MPM_PI / 180, lift = d->lift * (double)MPM_PI / 180;
+    to[0][0] = cos(turn);
+    to[0][1] = sin(turn);
+    to[0][2] = 0;
+    to[1][0] = -sin(lift) * sin(turn);
+    to[1][1] = sin(lift) * cos(turn);
+    to[1][2] = cos(lift);
+    to[2][0] = cos(lift) * sin(turn);
+    to[2][1] = -cos(lift) * cos(turn);
+    to[2][2] = sin(lift);
+}
+
+/* A place as it is seen: where in the picture and how near [length], and the normal there, of any length. */
+typedef struct mpm__draw_seen {
+    double at[3], normal[3];
+} mpm__draw_seen;
+
+static inline void mpm__draw_turned(double to[3][3], const double x[3], double at[3])
+{
+    int k;
+    for (k = 0; k < 3; k++) at[k] = to[k][0] * x[0] + to[k][1] * x[1] + to[k][2] * x[2];
+}
+
+/* Normals at the corners: of the triangles around, by their areas; in a mirror's plane, along it. */
+static inline void mpm__draw_normals(const mpm_draw_solid_desc *d, double (*normal)[3])
+{
+    size_t i;
+    int k;
+    memset(normal, 0, d->count * sizeof *normal);
+    for (i = 0; i < d->triangles; i++) {
+        const int32_t *t = d->triangle[i];
+        double a[3], b[3], n[3];
+        for (k = 0; k < 3; k++) {
+            a[k] = (double)d->x[k][t[1]] - (double)d->x[k][t[0]];
+            b[k] = (double)d->x[k][t[2]] - (double)d->x[k][t[0]];
+        }
+        n[0] = a[1] * b[2] - a[2] * b[1];
+        n[1] = a[2] * b[0] - a[0] * b[2];
+        n[2] = a[0] * b[1] - a[1] * b[0];
+        for (k = 0; k < 9; k++) normal[t[k / 3]][k % 3] += n[k % 3];
+    }
+    for (i = 0; i < d->count; i++)
+        for (k = 0; k < 3; k++)
+            if (d->mirror[k] && !(fabs((double)d->x[k][i]) > 0)) normal[i][k] = 0;
+}
+
+/* Place i, seen as its image in the mirrors of `image`. */
+static inline void mpm__draw_see(const mpm_draw_solid_desc *d, size_t i, int image, double to[3][3],
+                                 const double (*normal)[3], mpm__draw_seen *seen)
+{
+    double x[3], n[3];
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double sign = image >> k & 1 ? -1 : 1;
+        x[k] = sign * (double)d->x[k][i];
+        n[k] = normal ? sign * normal[i][k] : 0;
+    }
+    mpm__draw_turned(to, x, seen->at);
+    mpm__draw_turned(to, n, seen->normal);
+}
+
+static inline int mpm__draw_has_image(const mpm_draw_solid_desc *d, int image)
+{
+    const int mirrors = (d->mirror[0] ? 1 : 0) | (d->mirror[1] ? 2 : 0) | (d->mirror[2] ? 4 : 0);
+    return (image & ~mirrors) == 0;
+}
+
+/* What has been painted, at twice the resolution: nearness, value, brightness and body (from 1; 0: none). */
+typedef struct mpm__draw_scene {
+    int width, height;
+    float *depth, *value, *shade;
+    int32_t *body;
+} mpm__draw_scene;
+
+/* The nearest so far at a half pixel. The normal is of unit length, towards the eye. */
+static inline void mpm__draw_put(mpm__draw_scene *s, int i, int j, double depth, const double normal[3], double value,
+                                 int32_t body)
+{
+    const size_t at = (size_t)j * (size_t)s->width + (size_t)i;
+    const double light = -0.40 * normal[0] + 0.55 * normal[1] + 0.73 * normal[2];
+    if (s->body[at] && depth <= (double)s->depth[at]) return;
+    s->depth[at] = (float)depth;
+    s->value[at] = (float)value;
+    s->shade[at] = (float)(0.35 + 0.65 * (light > 0 ? light : 0));
+    s->body[at] = body;
+}
+
+/* A ball around (x, y), in half pixels, of that radius; `length`: of a half pixel. */
+static inline void mpm__draw_ball(mpm__draw_scene *s, double x, double y, double depth, double radius, double length,
+                                  double value, int32_t body)
+{
+    int left = mpm__draw_whole(floor(x - radius), 0, s->width), right = mpm__draw_whole(ceil(x + radius), 0, s->width);
+    int top = mpm__draw_whole(floor(y - radius), 0, s->height), i, j;
+    int bottom = mpm__draw_whole(ceil(y + radius), 0, s->height);
+    for (j = top; j < bottom; j++)
+        for (i = left; i < right; i++) {
+            double n[3], q;
+            n[0] = (i + 0.5 - x) / radius;
+            n[1] = (y - j - 0.5) / radius;
+            q = 1 - n[0] * n[0] - n[1] * n[1];
+            if (!(q >= 0)) continue;
+            n[2] = sqrt(q);
+            mpm__draw_put(s, i, j, depth + n[2] * radius * length, n, value, body);
+        }
+}
+
+/* The unit normal of a triangle, towards the eye, and the sign that took. 0 if it has none. */
+static inline double mpm__draw_facing(const mpm__draw_seen t[3], double n[3])
+{
+    double a[3], b[3], size, sign;
+    int k;
+    for (k = 0; k < 3; k++) {
+        a[k] = t[1].at[k] - t[0].at[k];
+        b[k] = t[2].at[k] - t[0].at[k];
+    }
+    n[0] = a[1] * b[2] - a[2] * b[1];
+    n[1] = a[2] * b[0] - a[0] * b[2];
+    n[2] = a[0] * b[1] - a[1] * b[0];
+    size = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    if (!(size > 0)) return 0;
+    sign = n[2] < 0 ? -1 : 1;
+    for (k = 0; k < 3; k++) n[k] *= sign / size;
+    return sign;
+}
+
+/* Normals at the corners become unit ones on the triangle's side; where a corner is of an edge, the triangle's own. */
+static inline void mpm__draw_soften(mpm__draw_seen t[3], const double n[3], double sign)
+{
+    int c, k;
+    for (c = 0; c < 3; c++) {
+        double *m = t[c].normal, size = sign * sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]), with = 0;
+        for (k = 0; k < 3 && fabs(size) > 0; k++) with += m[k] / size * n[k];
+        for (k = 0; k < 3; k++) m[k] = with > 0.7 ? m[k] / size : n[k];
+    }
+}
+
+/* Shares of the corners at (x, y) of a triangle of that doubled area; 0 outside it. */
+static inline int mpm__draw_shares(const mpm__draw_seen t[3], double area, double x, double y, double share[3])
+{
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double *a = t[(k + 1) % 3].at, *b = t[(k + 2) % 3].at;
+        share[k] = ((a[0] - x) * (b[1] - y) - (a[1] - y) * (b[0] - x)) / area;
+        if (!(share[k] >= 0)) return 0;
+    }
+    return 1;
+}
+
+/* A triangle whose corners are in half pixels. */
+static inline void mpm__draw_triangle(mpm__draw_scene *s, const mpm__draw_seen t[3], const double value[3],
+                                      int32_t body)
+{
+    const double area = (t[1].at[0] - t[0].at[0]) * (t[2].at[1] - t[0].at[1]) -
+                        (t[1].at[1] - t[0].at[1]) * (t[2].at[0] - t[0].at[0]);
+    double low[2], high[2], share[3], n[3];
+    int i, j, k, c;
+    if (!(fabs(area) > 0)) return;
+    for (k = 0; k < 2; k++) {
+        low[k] = fmin(fmin(t[0].at[k], t[1].at[k]), t[2].at[k]);
+        high[k] = fmax(fmax(t[0].at[k], t[1].at[k]), t[2].at[k]);
+    }
+    for (j = mpm__draw_whole(floor(low[1]), 0, s->height); j < mpm__draw_whole(ceil(high[1]), 0, s->height); j++)
+        for (i = mpm__draw_whole(floor(low[0]), 0, s->width); i < mpm__draw_whole(ceil(high[0]), 0, s->width); i++) {
+            double depth = 0, mean = 0, size = 0;
+            if (!mpm__draw_shares(t, area, i + 0.5, j + 0.5, share)) continue;
+            for (k = 0; k < 3; k++) {
+                for (n[k] = 0, c = 0; c < 3; c++) n[k] += share[c] * t[c].normal[k];
+                depth += share[k] * t[k].at[2];
+                mean += share[k] * value[k];
+                size += n[k] * n[k];
+            }
+            for (k = 0; k < 3; k++) n[k] /= sqrt(size);
+            mpm__draw_put(s, i, j, depth, n, mean, body);
+        }
+}
+
+/* The window: of the box, or of all places and their images. */
+static inline void mpm__draw_solid_fit(const mpm_draw_solid_desc *d, double to[3][3], mpm__draw_axes *a)
+{
+    const int given = d->box[1] > d->box[0] && d->box[3] > d->box[2] && d->box[5] > d->box[4];
+    const size_t places = given ? 8 : d->count;
+    const double half = given || d->triangles ? 0 : d->size / 2;
+    mpm__draw_seen seen;
+    size_t i;
+    int image, k, first = 1;
+    memset(a, 0, sizeof *a);
+    for (image = 0; image < (given ? 1 : 8); image++)
+        for (i = 0; i < places && mpm__draw_has_image(d, image); i++) {
+            double corner[3];
+            for (k = 0; k < 3; k++) corner[k] = d->box[2 * k + (int)(i >> k & 1)];
+            if (given) mpm__draw_turned(to, corner, seen.at);
+            else mpm__draw_see(d, i, image, to, NULL, &seen);
+            for (k = 0; k < 2 && seen.at[0] - seen.at[0] == 0 && seen.at[1] - seen.at[1] == 0; k++) {
+                if (first || seen.at[k] - half < a->low[k]) a->low[k] = seen.at[k] - half;
+                if (first || seen.at[k] + half > a->high[k]) a->high[k] = seen.at[k] + half;
+                first = first && k == 0;
+            }
+        }
+    for (k = 0; k < 2; k++) {
+        const double pad = a->high[k] > a->low[k] ? 0.02 * (a->high[k] - a->low[k]) : 0.5;
+        a->low[k] -= pad;
+        a->high[k] += pad;
+    }
+}
+
+/* All balls of one image. */
+static inline void mpm__draw_balls(mpm__draw_scene *s, const mpm_draw_solid_desc *d, int image, double to[3][3],
+                                   const mpm__draw_axes *a, double scale)
+{
+    mpm__draw_seen seen;
+    int32_t walk = 0;
+    size_t i;
+    for (i = 0; i < d->count; i++) {
+        const int32_t of = d->world ? mpm__draw_body_at(d->world, (int32_t)i, &walk) : 0;
+        double size = d->size;
+        if (of < 0) continue;
+        if (!(size > 0)) size = 1.3 * (double)d->world->body[of].desc.spacing;
+        mpm__draw_see(d, i, image, to, NULL, &seen);
+        if (!(seen.at[0] - seen.at[0] == 0 && seen.at[1] - seen.at[1] == 0)) continue;
+        mpm__draw_ball(s, scale * (seen.at[0] - a->low[0]), scale * (a->high[1] - seen.at[1]), seen.at[2],
+                       scale * size / 2, 1 / scale, d->value ? d->scale * (double)d->value[i] : 0,
+                       1 + (d->body ? d->body[i] : of));
+    }
+}
+
+/* All triangles of one image. */
+static inline void mpm__draw_faces(mpm__draw_scene *s, const mpm_draw_solid_desc *d, int image, double to[3][3],
+                                   const mpm__draw_axes *a, double scale, const double (*normal)[3])
+{
+    size_t i;
+    int k;
+    for (i = 0; i < d->triangles; i++) {
+        mpm__draw_seen t[3];
+        double value[3], n[3], sign;
+        for (k = 0; k < 3; k++) {
+            const int32_t p = d->triangle[i][k];
+            mpm__draw_see(d, (size_t)p, image, to, normal, &t[k]);
+            value[k] = d->value ? d->scale * (double)d->value[p] : 0;
+        }
+        if (!((sign = mpm__draw_facing(t, n)) != 0)) continue;
+        if (image == 1 || image == 2 || image == 4 || image == 7) sign = -sign; /* seen in a mirror, they turn round */
+        mpm__draw_soften(t, n, sign);
+        for (k = 0; k < 3; k++) {
+            t[k].at[0] = scale * (t[k].at[0] - a->low[0]);
+            t[k].at[1] = scale * (a->high[1] - t[k].at[1]);
+        }
+        mpm__draw_triangle(s, t, value, 1 + (d->body ? d->body[d->triangle[i][0]] : 0));
+    }
+}
+
+/* The range of colours: as given, or that of what is seen. */
+static inline mpm__draw_span mpm__draw_solid_span(const mpm__draw_scene *s, const mpm_draw_solid_desc *d)
+{
+    const size_t pixels = (size_t)s->width * (size_t)s->height;
+    mpm__draw_dot dot[2];
+    mpm__draw_axes all;
+    size_t i;
+    int found = 0;
+    memset(dot, 0, sizeof dot);
+    memset(&all, 0, sizeof all);
+    for (i = 0; i < pixels; i++) {
+        const double v = (double)s->value[i];
+        if (!s->body[i] || !(v - v == 0)) continue;
+        if (!found || v < dot[0].value) dot[0].value = v;
+        if (!found || v > dot[1].value) dot[1].value = v;
+        found = 1;
+    }
+    return mpm__draw_value_span(dot, 2, &all, d->low, d->high);
+}
+
+/* The colour of a half pixel: steps as in a cut, dimmed. */
+static inline mpm_draw_color mpm__draw_lit(const mpm__draw_scene *s, size_t at, const mpm__draw_span *span,
+                                           const mpm_draw_solid_desc *d)
+{
+    const double t = ((double)s->value[at] - span->low) / (span->high - span->low);
+    mpm_draw_color color;
+    if (!s->body[at]) return 0xffffff;
+    if (d->value) color = mpm_draw_map_color(d->map, t == t ? floor(t * 96 + 0.5) / 96 : t);
+    else color = mpm__draw_blend(mpm_draw_series_color(s->body[at] - 1), 0xffffff, 0.35);
+    return mpm__draw_blend(0, color, (double)s->shade[at]);
+}
+
+/* Averages the half pixels into the canvas at the frame. */
+static inline void mpm__draw_scene_out(mpm_draw_canvas *c, const mpm__draw_scene *s, const mpm__draw_axes *a,
+                                       const mpm__draw_span *span, const mpm_draw_solid_desc *d)
+{
+    const int n = MPM__DRAW_FINE * MPM__DRAW_FINE;
+    int x, y, k, b;
+    for (y = 0; y < s->height / MPM__DRAW_FINE; y++)
+        for (x = 0; x < s->width / MPM__DRAW_FINE; x++) {
+            int sum[3] = {0, 0, 0};
+            for (k = 0; k < n; k++) {
+                const size_t row = (size_t)(MPM__DRAW_FINE * y + k / MPM__DRAW_FINE) * (size_t)s->width;
+                const mpm_draw_color color =
+                    mpm__draw_lit(s, row + (size_t)(MPM__DRAW_FINE * x + k % MPM__DRAW_FINE), span, d);
+                for (b = 0; b < 3; b++) sum[b] += (int)(color >> (16 - 8 * b) & 255);
+            }
+            mpm_draw_rectangle(c, floor(a->left) + x, floor(a->top) + y, 1, 1,
+                               (mpm_draw_color)((sum[0] + n / 2) / n << 16 | (sum[1] + n / 2) / n << 8 |
+                                                (sum[2] + n / 2) / n));
+        }
+}
+
+/* Everything within the frame; *span becomes the range of its colours. MPM_ERR_MEMORY. */
+static inline mpm_status mpm__draw_solid_scene(mpm_draw_canvas *c, const mpm__draw_axes *a, double to[3][3],
+                                               const mpm_draw_solid_desc *d, mpm__draw_span *span)
+{
+    const double scale = MPM__DRAW_FINE * (a->right - a->left) / (a->high[0] - a->low[0]);
+    double (*normal)[3] = d->triangles ? (double(*)[3])MPM_MALLOC(mpm_size_mul(d->count, sizeof *normal)) : NULL;
+    mpm__draw_scene s;
+    float *memory;
+    size_t pixels;
+    int image;
+    s.width = MPM__DRAW_FINE * mpm__draw_whole(a->right - a->left, 1, 16384);
+    s.height = MPM__DRAW_FINE * mpm__draw_whole(a->bottom - a->top, 1, 16384);
+    pixels = (size_t)s.width * (size_t)s.height;
+    memory = (float *)MPM_MALLOC(mpm_size_mul(pixels, 4 * sizeof(float)));
+    if (memory && (normal || d->triangles == 0)) {
+        memset(memory, 0, pixels * 4 * sizeof(float));
+        s.depth = memory;
+        s.value = memory + pixels;
+        s.shade = memory + 2 * pixels;
+        s.body = (int32_t *)(void *)(memory + 3 * pixels);
+        if (normal) mpm__draw_normals(d, normal);
+        for (image = 0; image < 8; image++)
+            if (!mpm__draw_has_image(d, image)) continue;
+            else if (normal) mpm__draw_faces(&s, d, image, to, a, scale, (const double(*)[3])normal);
+            else mpm__draw_balls(&s, d, image, to, a, scale);
+        *span = mpm__draw_solid_span(&s, d);
+        mpm__draw_scene_out(c, &s, a, span, d);
+        pixels = 0;
+    }
+    if (normal) MPM_FREE(normal);
+    if (memory) MPM_FREE(memory);
+    return pixels ? MPM_ERR_MEMORY : MPM_OK;
+}
+
+MPM_API mpm_status mpm_draw_solid(mpm_draw_canvas *c, mpm_draw_rect where, const mpm_draw_solid_desc *d,
+                                  mpm_fault *fault)
+{
+    mpm__draw_furniture f = {NULL, NULL, NULL, NULL, NULL, 0, 1, 1};
+    mpm__draw_axes a;
+    mpm__draw_span s = {0, 1, 0, 0};
+    double to[3][3];
+    mpm_status status = mpm__draw_solid_check(d, fault);
+    if (status < 0) return status;
+    f.title = d->title;
+    f.note = d->time;
+    f.bar = d->value ? d->label : NULL;
+    mpm__draw_view(d, to);
+    mpm__draw_solid_fit(d, to, &a);
+    if (!mpm__draw_place(c, where, &f, &a)) return mpm__draw_no_place(where, fault);
+    status = mpm__draw_solid_scene(c, &a, to, d, &s);
+    if (status < 0) return mpm_fail(fault, status, "scene of the solid", 0, -1);
+    mpm__draw_heading(c, &a, &f);
+    if (d->length_unit) mpm__draw_scale_bar(c, &a, 1, d->length_unit);
+    mpm__draw_bar_below(c, &a, &f, d->map, &s);
+    return MPM_OK;
 }
 
 /* ---- scatter ------------------------------------------------------------------------------- */

@@ -9,7 +9,7 @@
      grids. Link with -lm.
 
    WHAT IT DOES NOT DO
-     It reads nothing but its own checkpoints and .pvd series. It draws nothing: mpm_draw.h does, and
+     It reads nothing but its own checkpoints, .pvd series and pictures. It draws nothing: mpm_draw.h does, and
      its pixels go to mpm_io_png. It never prints to stdout or stderr, never exits, and keeps no
      global state.
 
@@ -56,11 +56,11 @@
      ParaView      mpm_io_scalar .. mpm_io_int32, mpm_io_vtu, mpm_io_body_numbers, mpm_io_pvd_begin, mpm_io_pvd_add
      restart       mpm_io_checkpoint_write, _checkpoint_read, _checkpoint_sizes, _world_text, _line,
                    _line_number
-     pictures      mpm_io_png
+     pictures      mpm_io_png, mpm_io_film_begin, _film_add, _film_add_png, _film_end
 
    CONFIGURATION (define before including)
      MPM_FLOAT               GLOBAL  as in mpm.h; public symbols then end in _f32.
-     MPM_MALLOC(n), MPM_FREE(p) IMPL names of files being written, lines of a .pvd, work memory of mpm_io_png.
+     MPM_MALLOC(n), MPM_FREE(p) IMPL names of files being written, lines of a .pvd, work memory of mpm_io_png and films.
 
    CONVENTIONS
      Text is UTF-8. Numbers in text files carry a decimal point under every locale and as many
@@ -119,6 +119,10 @@
 #define mpm_io_line mpm_io_line_f32
 #define mpm_io_line_number mpm_io_line_number_f32
 #define mpm_io_png mpm_io_png_f32
+#define mpm_io_film_begin mpm_io_film_begin_f32
+#define mpm_io_film_add mpm_io_film_add_f32
+#define mpm_io_film_add_png mpm_io_film_add_png_f32
+#define mpm_io_film_end mpm_io_film_end_f32
 #define mpm_io_body_numbers mpm_io_body_numbers_f32
 #endif
 
@@ -342,6 +346,32 @@ MPM_API size_t mpm_io_line_number(char *buffer, size_t n, size_t used, const cha
    (1 .. 16384 each), MPM_ERR_FILE, MPM_ERR_MEMORY. Test: 40_io "png". */
 MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int width, int height,
                               const char *note, mpm_fault *fault);
+
+/* A film: pictures of one size, one after the other for ever, in a PNG that browsers show (APNG). Other programs show
+   the first of them. */
+typedef struct mpm_io_film {
+    mpm_io_file file;
+    double seconds;    /* that the next picture is shown, in thousandths, at most 60; change at will */
+    const char *note;  /* as for a picture; until the first one is there */
+    int width, height; /* of the first picture */
+    int pictures;      /* so far */
+    uint32_t chunks;   /* ... with a number */
+    long place;        /* of the number of pictures in the file */
+    mpm_status status; /* first thing that went wrong */
+} mpm_io_film;
+
+/* Begins a film: it must be ended. MPM_ERR_FILE, MPM_ERR_ARGUMENT, MPM_ERR_MEMORY. Test: 40_io "film". */
+MPM_API mpm_status mpm_io_film_begin(mpm_io_film *f, const char *path, double seconds, const char *note,
+                                     mpm_fault *fault);
+/* The next picture: pixels as for mpm_io_png, or a file of it. MPM_ERR_ARGUMENT: without pixels, of a size out of
+   range, of another size than the first; MPM_ERR_FILE: not written by mpm_io_png, or damaged; MPM_ERR_MEMORY. An error
+   sticks. Test: 40_io "film". */
+MPM_API mpm_status mpm_io_film_add(mpm_io_film *f, const unsigned char *pixels, int width, int height,
+                                   mpm_fault *fault);
+MPM_API mpm_status mpm_io_film_add_png(mpm_io_film *f, const char *path, mpm_fault *fault);
+/* Gives the film its name. After an error, and without pictures (MPM_ERR_ARGUMENT), there is none, and a file that had
+   the name before is as it was; the fault stays as the error left it. Test: 40_io "film". */
+MPM_API mpm_status mpm_io_film_end(mpm_io_film *f, mpm_fault *fault);
 
 #ifdef __cplusplus
 }
@@ -1686,6 +1716,7 @@ typedef struct mpm__io_zip {
     int token_count;
     int32_t head[MPM__IO_WINDOW];      /* by hash of three bytes: their last position + 1 */
     int32_t previous[MPM__IO_WINDOW];  /* by position: the one before with the same hash, + 1 */
+    uint32_t *number;                  /* of the next chunk of a film's later pictures; NULL: IDAT, which have none */
 } mpm__io_zip;
 
 static inline void mpm__io_big_endian(unsigned char out[4], uint32_t value)
@@ -1708,12 +1739,35 @@ static inline void mpm__io_png_chunk(mpm_io_file *f, const char *type, const voi
     mpm_io_put_bytes(f, number, 4);
 }
 
+/* The head of a chunk of n bytes of compressed rows: IDAT, or fdAT with its number. Returns the CRC so far. */
+static inline uint32_t mpm__io_rows_head(mpm_io_file *f, uint32_t *number, size_t n)
+{
+    unsigned char size[4], count[4];
+    const char *type = number ? "fdAT" : "IDAT";
+    const size_t more = number ? 4 : 0;
+    if (number) mpm__io_big_endian(count, (*number)++);
+    mpm__io_big_endian(size, (uint32_t)(n + more));
+    mpm_io_put_bytes(f, size, 4);
+    mpm_io_put_bytes(f, type, 4);
+    if (number) mpm_io_put_bytes(f, count, 4);
+    return mpm__io_crc(mpm__io_crc(0, type, 4), count, more);
+}
+
+/* What is ready of the compressed rows, as a chunk. */
+static inline void mpm__io_zip_out(mpm__io_zip *z)
+{
+    unsigned char sum[4];
+    const uint32_t crc = mpm__io_rows_head(z->file, z->number, z->used);
+    mpm_io_put_bytes(z->file, z->out, z->used);
+    mpm__io_big_endian(sum, mpm__io_crc(crc, z->out, z->used));
+    mpm_io_put_bytes(z->file, sum, 4);
+    z->used = 0;
+}
+
 static inline void mpm__io_zip_byte(mpm__io_zip *z, unsigned value)
 {
     z->out[z->used++] = (unsigned char)value;
-    if (z->used < sizeof z->out) return;
-    mpm__io_png_chunk(z->file, "IDAT", z->out, z->used);
-    z->used = 0;
+    if (z->used == sizeof z->out) mpm__io_zip_out(z);
 }
 
 /* Appends the low `count` bits of value, lowest first. */
@@ -1946,7 +2000,7 @@ static inline void mpm__io_zip_all(mpm__io_zip *z, const unsigned char *data, in
     if (z->bit_count > 0) mpm__io_zip_bits(z, 0, 8 - z->bit_count);
     mpm__io_big_endian(number, mpm__io_adler(1, data, (size_t)n));
     for (i = 0; i < 4; i++) mpm__io_zip_byte(z, number[i]);
-    if (z->used > 0) mpm__io_png_chunk(z->file, "IDAT", z->out, z->used);
+    if (z->used > 0) mpm__io_zip_out(z);
 }
 
 /* ---- PNG ----------------------------------------------------------------------------------- */
@@ -2029,8 +2083,8 @@ static inline void mpm__io_png_text(mpm_io_file *f, const char *keyword, const c
     mpm_io_put_bytes(f, number, 4);
 }
 
-/* The chunks of a picture whose filtered rows, width * 3 + 1 bytes each, stand behind z. */
-static inline void mpm__io_png_body(mpm_io_file *f, mpm__io_zip *z, int width, int height, const char *note)
+/* What stands before the rows: of what size, by whom, what it shows. */
+static inline void mpm__io_png_head(mpm_io_file *f, int width, int height, const char *note)
 {
     unsigned char header[13] = {0};
     mpm_io_put(f, "\x89PNG\r\n\x1a\n");
@@ -2041,36 +2095,205 @@ static inline void mpm__io_png_body(mpm_io_file *f, mpm__io_zip *z, int width, i
     mpm__io_png_chunk(f, "IHDR", header, sizeof header);
     mpm__io_png_text(f, "Software", "mpm.h " MPM_VERSION);
     if (note) mpm__io_png_text(f, "Description", note);
-    mpm__io_zip_all(z, (const unsigned char *)(z + 1), (int32_t)((width * 3 + 1) * height));
-    mpm__io_png_chunk(f, "IEND", NULL, 0);
 }
 
-MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int width, int height,
-                              const char *note, mpm_fault *fault)
+static inline mpm_status mpm__io_png_check(const unsigned char *pixels, int width, int height, mpm_fault *fault)
 {
-    size_t bytes;
-    mpm_io_file f;
-    mpm__io_zip *z;
-    mpm_status status;
     if (!pixels) return mpm_fail(fault, MPM_ERR_ARGUMENT, "pixels (none)", 0, -1);
     if (width < 1 || width > 16384)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "width of picture", (mpm_real)width, -1);
     if (height < 1 || height > 16384)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "height of picture", (mpm_real)height, -1);
-    status = mpm_io_open(&f, path, fault);
-    if (status < 0) return status;
-    bytes = sizeof *z + ((size_t)width * 3 + 1) * (size_t)height;
-    z = (mpm__io_zip *)MPM_MALLOC(bytes);
+    return MPM_OK;
+}
+
+/* What compresses a picture, its filtered rows of width * 3 + 1 bytes each behind it; MPM_FREE it. NULL: no memory. */
+static inline mpm__io_zip *mpm__io_zip_of(mpm_io_file *f, const unsigned char *pixels, int width, int height,
+                                          mpm_fault *fault)
+{
+    const size_t bytes = sizeof(mpm__io_zip) + ((size_t)width * 3 + 1) * (size_t)height;
+    mpm__io_zip *z = (mpm__io_zip *)MPM_MALLOC(bytes);
     if (!z) {
-        mpm_io_drop(&f);
-        return mpm_fail(fault, MPM_ERR_MEMORY, "bytes for picture", (mpm_real)bytes, -1);
+        mpm_fail(fault, MPM_ERR_MEMORY, "bytes for picture", (mpm_real)bytes, -1);
+        return NULL;
     }
     memset(z, 0, sizeof *z);
-    z->file = &f;
+    z->file = f;
     mpm__io_filter_all(pixels, width, height, (unsigned char *)(z + 1));
-    mpm__io_png_body(&f, z, width, height, note);
+    return z;
+}
+
+static inline void mpm__io_zip_rows(mpm__io_zip *z, int width, int height)
+{
+    mpm__io_zip_all(z, (const unsigned char *)(z + 1), (int32_t)((width * 3 + 1) * height));
+}
+
+MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int width, int height,
+                              const char *note, mpm_fault *fault)
+{
+    mpm_io_file f;
+    mpm__io_zip *z;
+    mpm_status status = mpm__io_png_check(pixels, width, height, fault);
+    if (status < 0 || (status = mpm_io_open(&f, path, fault)) < 0) return status;
+    z = mpm__io_zip_of(&f, pixels, width, height, fault);
+    if (!z) {
+        mpm_io_drop(&f);
+        return MPM_ERR_MEMORY;
+    }
+    mpm__io_png_head(&f, width, height, note);
+    mpm__io_zip_rows(z, width, height);
+    mpm__io_png_chunk(&f, "IEND", NULL, 0);
     MPM_FREE(z);
     return mpm_io_close(&f, fault);
+}
+
+/* ---- films ----------------------------------------------------------------------------------- */
+
+MPM_API mpm_status mpm_io_film_begin(mpm_io_film *f, const char *path, double seconds, const char *note,
+                                     mpm_fault *fault)
+{
+    memset(f, 0, sizeof *f);
+    f->seconds = seconds;
+    f->note = note;
+    return f->status = mpm_io_open(&f->file, path, fault);
+}
+
+/* Number and loops of a film's pictures. */
+static inline void mpm__io_film_control(mpm_io_film *f)
+{
+    unsigned char control[8] = {0};
+    mpm__io_big_endian(control, (uint32_t)f->pictures);
+    mpm__io_png_chunk(&f->file, "acTL", control, sizeof control);
+}
+
+/* What stands before the rows of each picture; before those of the first what stands before all. */
+static inline void mpm__io_film_next(mpm_io_film *f, int width, int height)
+{
+    unsigned char control[26] = {0};
+    const double ms = f->seconds > 0 ? f->seconds < 60 ? floor(1000 * f->seconds + 0.5) : 60000 : 0;
+    if (f->pictures == 0) {
+        mpm__io_png_head(&f->file, f->width = width, f->height = height, f->note);
+        f->place = f->file.stream ? ftell(f->file.stream) : -1;
+        mpm__io_film_control(f);
+    }
+    mpm__io_big_endian(control, f->chunks++);
+    mpm__io_big_endian(control + 4, (uint32_t)width);
+    mpm__io_big_endian(control + 8, (uint32_t)height);
+    control[20] = (unsigned char)((unsigned)ms >> 8);
+    control[21] = (unsigned char)((unsigned)ms & 255);
+    control[22] = 1000 >> 8;
+    control[23] = 1000 & 255;
+    mpm__io_png_chunk(&f->file, "fcTL", control, sizeof control);
+    f->pictures++;
+}
+
+/* Whether a picture may come next. */
+static inline mpm_status mpm__io_film_takes(mpm_io_film *f, int width, int height, mpm_fault *fault)
+{
+    if (f->pictures > 0 && width != f->width)
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "width of a later picture", (mpm_real)width, f->pictures);
+    if (f->pictures > 0 && height != f->height)
+        return mpm_fail(fault, MPM_ERR_ARGUMENT, "height of a later picture", (mpm_real)height, f->pictures);
+    return MPM_OK;
+}
+
+MPM_API mpm_status mpm_io_film_add(mpm_io_film *f, const unsigned char *pixels, int width, int height,
+                                   mpm_fault *fault)
+{
+    mpm__io_zip *z;
+    if (f->status < 0) return f->status;
+    f->status = mpm__io_png_check(pixels, width, height, fault);
+    if (f->status >= 0) f->status = mpm__io_film_takes(f, width, height, fault);
+    if (f->status < 0) return f->status;
+    z = mpm__io_zip_of(&f->file, pixels, width, height, fault);
+    if (!z) return f->status = MPM_ERR_MEMORY;
+    mpm__io_film_next(f, width, height);
+    z->number = f->pictures > 1 ? &f->chunks : NULL;
+    mpm__io_zip_rows(z, width, height);
+    MPM_FREE(z);
+    return MPM_OK;
+}
+
+static inline uint32_t mpm__io_from_big_endian(const unsigned char *p)
+{
+    return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | (uint32_t)p[3];
+}
+
+/* Copies a chunk of n bytes of rows whose head has been read, with a new head. Returns 0 if it is damaged. */
+static inline int mpm__io_film_rows(mpm_io_film *f, FILE *in, size_t n)
+{
+    unsigned char block[4096], sum[4];
+    uint32_t was = mpm__io_crc(0, "IDAT", 4), is;
+    is = mpm__io_rows_head(&f->file, f->pictures > 1 ? &f->chunks : NULL, n);
+    while (n > 0) {
+        const size_t part = n < sizeof block ? n : sizeof block;
+        if (fread(block, 1, part, in) != part) return 0;
+        mpm_io_put_bytes(&f->file, block, part);
+        was = mpm__io_crc(was, block, part);
+        is = mpm__io_crc(is, block, part);
+        n -= part;
+    }
+    if (fread(sum, 1, 4, in) != 4 || mpm__io_from_big_endian(sum) != was) return 0;
+    mpm__io_big_endian(sum, is);
+    mpm_io_put_bytes(&f->file, sum, 4);
+    return 1;
+}
+
+/* All its rows; what else is in it is passed over. Returns 0 if it is damaged. */
+static inline int mpm__io_film_copy(mpm_io_film *f, FILE *in)
+{
+    unsigned char head[8];
+    while (fread(head, 1, 8, in) == 8) {
+        const uint32_t n = mpm__io_from_big_endian(head);
+        if (!memcmp(head + 4, "IEND", 4)) return n == 0;
+        if (n > 0x7fffffffu - 4) return 0;
+        if (memcmp(head + 4, "IDAT", 4)) {
+            if (fseek(in, (long)n + 4, SEEK_CUR) != 0) return 0;
+        } else if (!mpm__io_film_rows(f, in, n)) {
+            return 0;
+        }
+    }
+    return 0;
+}
+
+MPM_API mpm_status mpm_io_film_add_png(mpm_io_film *f, const char *path, mpm_fault *fault)
+{
+    static const unsigned char kind[5] = {8, 2, 0, 0, 0}; /* 8 bits, RGB, the one way to compress and filter, in rows */
+    unsigned char head[33];
+    FILE *in;
+    if (f->status < 0) return f->status;
+    in = path ? fopen(path, "rb") : NULL;
+    if (!in) return f->status = mpm_fail(fault, MPM_ERR_FILE, "picture (cannot be opened)", 0, -1);
+    if (fread(head, 1, 33, in) != 33 || memcmp(head, "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR", 16) ||
+        memcmp(head + 24, kind, 5))
+        f->status = mpm_fail(fault, MPM_ERR_FILE, "picture: none of mpm_io_png", 0, -1);
+    else
+        f->status = mpm__io_film_takes(f, (int)mpm__io_from_big_endian(head + 16),
+                                       (int)mpm__io_from_big_endian(head + 20), fault);
+    if (f->status >= 0) {
+        mpm__io_film_next(f, (int)mpm__io_from_big_endian(head + 16), (int)mpm__io_from_big_endian(head + 20));
+        if (!mpm__io_film_copy(f, in)) f->status = mpm_fail(fault, MPM_ERR_FILE, "picture: damaged", 0, -1);
+    }
+    fclose(in);
+    return f->status;
+}
+
+MPM_API mpm_status mpm_io_film_end(mpm_io_film *f, mpm_fault *fault)
+{
+    FILE *out = f->file.stream;
+    if (f->status >= 0 && f->pictures == 0)
+        f->status = mpm_fail(fault, MPM_ERR_ARGUMENT, "pictures of the film", 0, -1);
+    if (f->status < 0) {
+        mpm_io_drop(&f->file);
+        return f->status;
+    }
+    mpm__io_png_chunk(&f->file, "IEND", NULL, 0);
+    if (f->place < 0 || fseek(out, f->place, SEEK_SET) != 0) {
+        mpm_io_drop(&f->file);
+        return mpm_fail(fault, MPM_ERR_FILE, "film (cannot go back in it)", 0, -1);
+    }
+    mpm__io_film_control(f); /* now their number is known */
+    return mpm_io_close(&f->file, fault);
 }
 
 #ifdef __cplusplus
@@ -2078,7 +2301,7 @@ MPM_API mpm_status mpm_io_png(const char *path, const unsigned char *pixels, int
 #endif
 #endif /* MPM_IMPLEMENTATION */
 
-/* References: PNG Specification, W3C; RFC 1950 and 1951 for zlib and deflate; the XML formats of
+/* References: PNG Specification, W3C (third edition: APNG); RFC 1950 and 1951 for zlib and deflate; the XML formats of
    the VTK file format documentation.
 
    MIT License: see LICENSE. */

@@ -1195,6 +1195,107 @@ static void test_png(void)
     CHECK_TRUE("1200 x 900 of flat areas in under 60 kB", n < 60000);
 }
 
+/* ---- films ------------------------------------------------------------------------------------ */
+
+enum { FILM_WIDE = 300, FILM_HIGH = 200, FILM_PICTURES = 4 };
+
+/* Picture k: stripes, or (2) noise, which takes several chunks. */
+static void film_picture(unsigned char *pixels, int k)
+{
+    size_t i;
+    for (i = 0; i < (size_t)3 * FILM_WIDE * FILM_HIGH; i++)
+        pixels[i] = (unsigned char)(k == 2 ? random_next() >> 12 : i / 60 * (size_t)(k + 1));
+}
+
+/* Two pictures as pixels, two as files. */
+static void test_film(void)
+{
+    static unsigned char pixels[FILM_PICTURES][3 * FILM_WIDE * FILM_HIGH];
+    const char *path = FOLDER "/film.png";
+    mpm_io_film f;
+    mpm_fault fault;
+    film_said said;
+    unsigned char *rgb;
+    int k, x, y;
+    CHECK_EQUAL("a film", mpm_io_film_begin(&f, path, 0.25, "a film", &fault), MPM_OK);
+    for (k = 0; k < FILM_PICTURES; k++) {
+        film_picture(pixels[k], k);
+        CHECK_EQUAL("a picture for it", mpm_io_png(FOLDER "/one.png", pixels[k], FILM_WIDE, FILM_HIGH, "one", &fault),
+                    MPM_OK);
+        if (k == FILM_PICTURES - 1) f.seconds = 2;
+        if (k % 2) mpm_io_film_add(&f, pixels[k], FILM_WIDE, FILM_HIGH, &fault);
+        else mpm_io_film_add_png(&f, FOLDER "/one.png", &fault);
+        CHECK_EQUAL("... goes into it", f.status, MPM_OK);
+    }
+    CHECK_TRUE("until it is ended it has no name", !exists(path));
+    CHECK_EQUAL("its end", mpm_io_film_end(&f, &fault), MPM_OK);
+    for (k = 0; k < FILM_PICTURES; k++) {
+        rgb = read_picture(path, k, &x, &y, &said);
+        CHECK_TRUE("each picture comes back", rgb && x == FILM_WIDE && y == FILM_HIGH &&
+                                                  !memcmp(rgb, pixels[k], sizeof pixels[k]));
+        CHECK_EQUAL("... shown for", said.ms, k < FILM_PICTURES - 1 ? 250 : 2000);
+        free(rgb);
+    }
+    CHECK_TRUE("as many as there are, for ever", said.pictures == FILM_PICTURES && said.plays == 0);
+    CHECK_TRUE("its note is kept", contains_bytes(path, "iTXtDescription\0\0\0\0\0a film", 26));
+    rgb = read_png(path, &x, &y);
+    CHECK_TRUE("who knows no films sees the first picture", rgb && !memcmp(rgb, pixels[0], sizeof pixels[0]));
+    free(rgb);
+}
+
+/* What goes wrong ends the film, and the one of before stays. */
+static void film_refused(const char *what, const char *picture, int width, mpm_status wanted, const char *field)
+{
+    static const unsigned char pixels[3 * FILM_WIDE * 2];
+    const char *path = FOLDER "/film.png";
+    unsigned char *before, *after;
+    size_t n[2];
+    mpm_io_film f;
+    mpm_fault fault;
+    before = slurp(path, &n[0]);
+    mpm_io_film_begin(&f, path, 1, NULL, &fault);
+    mpm_io_film_add(&f, pixels, 20, 2, &fault);
+    if (picture) mpm_io_film_add_png(&f, picture, &fault);
+    else mpm_io_film_add(&f, pixels, width, 2, &fault);
+    CHECK_EQUAL(what, f.status, wanted);
+    CHECK_TRUE("... is named", strstr(fault.field, field) != NULL);
+    CHECK_EQUAL("... it sticks", mpm_io_film_add(&f, pixels, 20, 2, &fault), wanted);
+    CHECK_EQUAL("... to the end", mpm_io_film_end(&f, &fault), wanted);
+    after = slurp(path, &n[1]);
+    CHECK_TRUE("... and the film of before stays", before && after && n[0] == n[1] && !memcmp(before, after, n[0]));
+    free(before);
+    free(after);
+}
+
+static void test_film_refused(void)
+{
+    mpm_io_film f;
+    mpm_fault fault;
+    unsigned char *file;
+    size_t n;
+    film_refused("another width", NULL, 30, MPM_ERR_ARGUMENT, "width");
+    film_refused("no width", NULL, 0, MPM_ERR_ARGUMENT, "width");
+    film_refused("a file that is not there", FOLDER "/none.png", 0, MPM_ERR_FILE, "cannot be opened");
+    write_file(FOLDER "/other.png", "\x89PNG\r\n", 6);
+    film_refused("a file that is no picture", FOLDER "/other.png", 0, MPM_ERR_FILE, "mpm_io_png");
+    film_refused("a picture of another size", FOLDER "/one.png", 0, MPM_ERR_ARGUMENT, "width");
+    file = slurp(FOLDER "/one.png", &n);
+    if (file) {
+        memcpy(file + 16, "\0\0\0\x14\0\0\0\2", 8); /* 20 x 2: of another size, but says not so */
+        file[n - 40] ^= 1;
+        write_file(FOLDER "/other.png", file, n);
+    }
+    film_refused("a damaged picture", FOLDER "/other.png", 0, MPM_ERR_FILE, "damaged");
+    if (file) write_file(FOLDER "/other.png", file, n / 2);
+    film_refused("half a picture", FOLDER "/other.png", 0, MPM_ERR_FILE, "damaged");
+    free(file);
+    CHECK_EQUAL("a film without pictures", mpm_io_film_begin(&f, FOLDER "/empty.png", 1, NULL, &fault), MPM_OK);
+    CHECK_EQUAL("... is none", mpm_io_film_end(&f, &fault), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... there is no file", !exists(FOLDER "/empty.png"));
+    CHECK_EQUAL("a film nowhere", mpm_io_film_begin(&f, FOLDER "/no/film.png", 1, NULL, &fault), MPM_ERR_FILE);
+    CHECK_EQUAL("... says so again", mpm_io_film_end(&f, &fault), MPM_ERR_FILE);
+}
+
 int main(void)
 {
     test_messages();
@@ -1219,5 +1320,7 @@ int main(void)
     test_room();
     test_crafted();
     test_png();
+    test_film();
+    test_film_refused();
     return check_end();
 }

@@ -671,6 +671,220 @@ static void test_odd_sizes(void)
     CHECK_EQUAL("a map that there is not", (long)mpm_draw_map_color((mpm_draw_map)77, 0.5), 0x9aa0a6);
 }
 
+/* ---- solids ----------------------------------------------------------------------------------- */
+
+#define RINGS 40
+#define ROUND 80
+
+/* A sphere of radius 1 around the origin, as triangles. Returns how many. */
+static int round_triangles(mpm_real (*x)[RINGS * ROUND], int32_t (*t)[3])
+{
+    const double pi = (double)MPM_PI;
+    int i, j, n = 0;
+    for (i = 0; i < RINGS; i++)
+        for (j = 0; j < ROUND; j++) {
+            const double down = pi * i / (RINGS - 1), turn = 2 * pi * j / ROUND;
+            x[0][ROUND * i + j] = (mpm_real)(sin(down) * cos(turn));
+            x[1][ROUND * i + j] = (mpm_real)(sin(down) * sin(turn));
+            x[2][ROUND * i + j] = (mpm_real)cos(down);
+            if (i == 0) continue;
+            t[n][0] = ROUND * (i - 1) + j;
+            t[n][1] = ROUND * i + j;
+            t[n++][2] = ROUND * i + (j + 1) % ROUND;
+            t[n][0] = ROUND * (i - 1) + j;
+            t[n][1] = ROUND * i + (j + 1) % ROUND;
+            t[n++][2] = ROUND * (i - 1) + (j + 1) % ROUND;
+        }
+    return n;
+}
+
+/* A solid of one place, a ball of radius 1, seen from the side. */
+static mpm_draw_solid_desc make_ball(void)
+{
+    static const mpm_real zero[1] = {0};
+    static const double box[6] = {-1.5, 1.5, -1.5, 1.5, -1.5, 1.5};
+    mpm_draw_solid_desc d = mpm_draw_solid_desc_default();
+    d.count = 1;
+    d.x[0] = d.x[1] = d.x[2] = zero;
+    d.size = 2;
+    d.turn = d.lift = 0;
+    memcpy(d.box, box, sizeof box);
+    return d;
+}
+
+static double brightness(const mpm_draw_canvas *c, int x, int y)
+{
+    const mpm_draw_color color = mpm_draw_pixel(c, x, y);
+    return (double)((color >> 16 & 255) + (color >> 8 & 255) + (color & 255));
+}
+
+/* The largest departure of a drawn ball from Lambert's law, of the brightest; its middle and radius are found on the
+   picture. */
+static double lambert(const mpm_draw_canvas *c)
+{
+    int x, y, left = 10000, right = 0, top = 10000, bottom = 0;
+    double most = 0, worst = 0, r;
+    for (y = 0; y < c->height; y++)
+        for (x = 0; x < c->width; x++) {
+            if (mpm_draw_pixel(c, x, y) == 0xffffff) continue;
+            if (x < left) left = x;
+            if (x > right) right = x;
+            if (y < top) top = y;
+            if (y > bottom) bottom = y;
+        }
+    r = (right - left + 1) / 2.0;
+    most = brightness(c, (int)(left + r - 0.40 * r), (int)(top + r - 0.55 * r));
+    for (y = top; y <= bottom; y++)
+        for (x = left; x <= right; x++) {
+            const double u = (x + 0.5 - left - r) / r, v = (top + r - y - 0.5) / r, q = 1 - u * u - v * v;
+            const double light = q > 0.05 ? -0.40 * u + 0.55 * v + 0.73 * sqrt(q) : 0;
+            if (q <= 0.05) continue;
+            worst = check_worst(worst, fabs(brightness(c, x, y) / most - 0.35 - 0.65 * (light > 0 ? light : 0)));
+        }
+    return worst;
+}
+
+/* A ball, a square and a sphere of triangles: areas of their silhouettes, and Lambert's law. */
+static void test_solid(void)
+{
+    static mpm_real x[3][RINGS * ROUND], square[3][4] = {{-1, 1, 1, -1}, {0, 0, 0, 0}, {-1, -1, 1, 1}};
+    static int32_t t[2 * RINGS * ROUND][3], halves[2][3] = {{0, 1, 2}, {0, 2, 3}};
+    mpm_draw_solid_desc ball = make_ball(), plate = make_ball(), sphere = make_ball();
+    mpm_draw_canvas c;
+    mpm_draw_rect all;
+    double area[3], bend;
+    mpm_fault f;
+    int k;
+    plate.count = 4;
+    plate.triangles = 2;
+    plate.triangle = (const int32_t(*)[3])halves;
+    sphere.count = RINGS * ROUND;
+    sphere.triangles = (size_t)round_triangles(x, t);
+    sphere.triangle = (const int32_t(*)[3])t;
+    for (k = 0; k < 3; k++) {
+        plate.x[k] = square[k];
+        sphere.x[k] = x[k];
+    }
+    for (k = 0; k < 3; k++) {
+        mpm_draw_canvas_init(&c, 800, 800, NULL, 0);
+        all = mpm_draw_tile(&c, 1, 1, 0);
+        CHECK_EQUAL("a solid", mpm_draw_solid(&c, all, k == 0 ? &ball : k == 1 ? &plate : &sphere, &f), MPM_OK);
+        area[k] = darkness(&c, 0, 0, 800, 800);
+        bend = lambert(&c);
+        if (k != 1) CHECK_NEAR("Lambert's law", bend, 0, 0.03);
+        mpm_draw_canvas_free(&c);
+    }
+    CHECK_RELATIVE("the silhouette of a ball, of its square", area[0] / area[1], 0.25 * (double)MPM_PI, 0.005);
+    CHECK_RELATIVE("... of one of triangles", area[2] / area[1], 0.25 * (double)MPM_PI, 0.005);
+}
+
+/* What is nearer hides what is behind, whatever comes first; mirrors; points of a world. */
+static void test_solid_order(void)
+{
+    mpm_real x[2] = {0, 0}, y[2] = {-1, 1};
+    int32_t body[2] = {0, 1};
+    mpm_draw_solid_desc d = make_ball();
+    mpm_draw_color seen[2];
+    mpm_draw_canvas c;
+    mpm_draw_rect all;
+    mpm_fault f;
+    int k;
+    mpm_draw_canvas_init(&c, 400, 400, NULL, 0);
+    all = mpm_draw_tile(&c, 1, 1, 0);
+    d.count = 2;
+    d.x[0] = d.x[2] = x;
+    d.x[1] = y;
+    d.body = body;
+    for (k = 0; k < 3; k++) {
+        d.turn = k == 2 ? 180 : 0;
+        if (k == 1) y[0] = 1, y[1] = -1, body[0] = 1, body[1] = 0;
+        mpm_draw_solid(&c, all, &d, &f);
+        if (k < 2) seen[k] = mpm_draw_pixel(&c, 200, 200);
+    }
+    CHECK_EQUAL("the nearer one is seen, whichever comes first", seen[0], seen[1]);
+    CHECK_TRUE("... from behind it is the other", mpm_draw_pixel(&c, 200, 200) != seen[0]);
+    mpm_draw_fill(&c, 0xffffff);
+    x[0] = 1;
+    d = make_ball();
+    d.x[0] = x;
+    d.size = 0.5;
+    d.mirror[0] = 1;
+    mpm_draw_solid(&c, all, &d, &f);
+    CHECK_TRUE("a mirror shows it on the other side", darkness(&c, 200, 0, 400, 400) > 100);
+    CHECK_EQUAL("... as large", darkness(&c, 0, 0, 200, 400), darkness(&c, 200, 0, 400, 400));
+    mpm_draw_canvas_free(&c);
+}
+
+static void solid_refused(const mpm_draw_solid_desc *d, const char *field)
+{
+    mpm_draw_canvas c;
+    mpm_fault f;
+    mpm_draw_canvas_init(&c, 40, 40, NULL, 0);
+    CHECK_EQUAL(field, mpm_draw_solid(&c, mpm_draw_tile(&c, 1, 1, 0), d, &f), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... is named", strstr(f.field, field) != NULL);
+    CHECK_EQUAL("... and nothing drawn", darkness(&c, 0, 0, 40, 40), 0);
+    mpm_draw_canvas_free(&c);
+}
+
+static void test_solid_refused(void)
+{
+    static const int32_t wild[1][3] = {{0, 0, 1}};
+    mpm_draw_solid_desc d = make_ball();
+    d.mark = 0;
+    solid_refused(&d, "mpm_draw_solid_desc_default");
+    d = make_ball();
+    d.count = 0;
+    solid_refused(&d, "places");
+    d = make_ball();
+    d.size = 0;
+    solid_refused(&d, "size");
+    d = make_ball();
+    d.turn = (double)NAN;
+    solid_refused(&d, "turn");
+    d = make_ball();
+    d.lift = (double)INFINITY;
+    solid_refused(&d, "lift");
+    d = make_ball();
+    d.triangles = 1;
+    solid_refused(&d, "triangle");
+    d.triangle = wild;
+    solid_refused(&d, "corner");
+    d = make_ball();
+    d.box[0] = -1e308;
+    d.box[1] = 1e308;
+    solid_refused(&d, "window");
+}
+
+/* A quarter of a world, whose mirrors make it whole. */
+static void test_solid_world(void)
+{
+    mpm_desc g = mpm_desc_default();
+    mpm_body_desc b = mpm_body_desc_default();
+    mpm_draw_solid_desc d;
+    mpm_draw_canvas c;
+    mpm_draw_rect all;
+    mpm_world w;
+    mpm_fault f;
+    g.cell = 1;
+    g.cells[0] = g.cells[1] = g.cells[2] = 6;
+    g.side[0] = g.side[2] = MPM_SIDE_SYMMETRY;
+    b.shape = mpm_sphere(0, 0, 3, 2);
+    b.spacing = MPM_R(0.5);
+    b.density = 1;
+    CHECK_EQUAL("a world", mpm_init(&w, &g, NULL, 0), MPM_OK);
+    CHECK_EQUAL("... of a quarter of a sphere", mpm_body_add(&w, &b), MPM_OK);
+    mpm_draw_canvas_init(&c, 400, 300, NULL, 0);
+    all = mpm_draw_tile(&c, 1, 1, 0);
+    d = mpm_draw_solid_of(&w, w.points.temperature);
+    d.turn = d.lift = 0;
+    d.label = "temperature (K)";
+    CHECK_EQUAL("its points as balls", mpm_draw_solid(&c, all, &d, &f), MPM_OK);
+    CHECK_RELATIVE("... on both sides of the mirror", darkness(&c, 0, 0, 200, 200), darkness(&c, 200, 0, 400, 200), 0.01);
+    CHECK_EQUAL("written", mpm_io_png(FOLDER "/solid.png", c.rgb, c.width, c.height, NULL, &f), MPM_OK);
+    mpm_draw_canvas_free(&c);
+    mpm_free(&w);
+}
+
 int main(void)
 {
     if (mpm_io_make_directory(FOLDER, NULL) < 0) return 1;
@@ -690,5 +904,9 @@ int main(void)
     test_clip();
     test_tiny_window();
     test_ticks_room();
+    test_solid();
+    test_solid_order();
+    test_solid_refused();
+    test_solid_world();
     return check_end();
 }

@@ -151,47 +151,83 @@ static inline void unfilter(unsigned char *raw, int width, int height)
     for (y = 0; y < height; y++) memmove(raw + (size_t)y * n, raw + (size_t)y * (n + 1) + 1, n);
 }
 
-/* Reads a PNG, checking every chunk; returns its 8-bit RGB pixels or NULL. */
-static inline unsigned char *read_png(const char *path, int *width, int *height)
+/* The pixels of compressed rows, packed bytes of them, or NULL. */
+static inline unsigned char *read_rows(const unsigned char *data, size_t packed, int width, int height)
 {
-    size_t n, at = 8, packed = 0, raw;
-    unsigned char *file = slurp(path, &n), *data, *out = NULL;
+    const size_t raw = (3 * (size_t)width + 1) * (size_t)height;
+    unsigned char *out = (unsigned char *)malloc(raw);
     inflater z;
-    int good = file && n > 57 && memcmp(file, "\x89PNG\r\n\x1a\n", 8) == 0, ended = 0;
+    z.in = data + 2;
+    z.n = packed < 6 ? 0 : packed - 6;
+    z.bit = 0;
+    if (out && packed > 6 && (data[0] * 256 + data[1]) % 31 == 0 && inflate_all(&z, out, raw) == raw &&
+        (z.bit + 7) / 8 == z.n && adler(out, raw) == big(data + packed - 4)) {
+        unfilter(out, width, height);
+        return out;
+    }
+    free(out);
+    return NULL;
+}
+
+/* What a film says of itself: pictures, times it is shown (0: for ever), thousandths of a second of the one read. */
+typedef struct film_said {
+    int pictures, plays, ms;
+} film_said;
+
+/* Reads a PNG, or picture `number` of a film (said: not NULL), checking every chunk: sums, a picture's head before its
+   rows, numbers in a row. Returns its 8-bit RGB pixels or NULL. */
+static inline unsigned char *read_picture(const char *path, int number, int *width, int *height, film_said *said)
+{
+    size_t n, at = 8, packed = 0;
+    uint32_t chunks = 0;
+    unsigned char *file = slurp(path, &n), *data, *out = NULL;
+    int good = file && n > 57 && memcmp(file, "\x89PNG\r\n\x1a\n", 8) == 0, ended = 0, pictures = 0, heads = -1;
     data = (unsigned char *)malloc(n + 1);
+    if (said) said->pictures = said->plays = said->ms = -1;
     while (good && data && !ended) {
-        size_t length = big(file + at);
-        good = at + length + 12 <= n &&
-               crc_bitwise(file + at + 4, length + 4) == big(file + at + 8 + length);
+        const unsigned char *type = file + at + 4, *body = file + at + 8;
+        size_t length = big(file + at), from = 0;
+        good = at + length + 12 <= n && crc_bitwise(type, length + 4) == big(body + length);
         if (!good) break;
-        if (memcmp(file + at + 4, "IDAT", 4) == 0) {
-            memcpy(data + packed, file + at + 8, length);
-            packed += length;
+        if (said && memcmp(type, "acTL", 4) == 0) {
+            good = length == 8 && heads < 0;
+            heads = 0;
+            said->pictures = (int)big(body);
+            said->plays = (int)big(body + 4);
         }
-        ended = memcmp(file + at + 4, "IEND", 4) == 0;
+        if (said && memcmp(type, "fcTL", 4) == 0) {
+            good = length == 26 && heads >= 0 && big(body) == chunks++ && memcmp(body + 4, file + 16, 8) == 0 &&
+                   big(body + 12) == 0 && big(body + 16) == 0 && body[22] * 256 + body[23] == 1000 && body[24] == 0 &&
+                   body[25] == 0;
+            if (heads++ == number) said->ms = body[20] * 256 + body[21];
+        }
+        if (said && memcmp(type, "fdAT", 4) == 0) good = heads > 1 && length > 4 && big(body) == chunks++;
+        if (memcmp(type, "fdAT", 4) == 0) from = 4;
+        if (memcmp(type, "IDAT", 4) == 0) good = !said || heads == 1;
+        if ((memcmp(type, "IDAT", 4) == 0 && (!said || number == 0)) ||
+            (said && from && heads == number + 1)) {
+            memcpy(data + packed, body + from, length - from);
+            packed += length - from;
+        }
+        pictures = heads;
+        ended = memcmp(type, "IEND", 4) == 0;
         at += length + 12;
         if (!ended && at + 12 > n) good = 0;
     }
-    good = good && at == n && memcmp(file + 12, "IHDR", 4) == 0;
-    good =
-        good && file[24] == 8 && file[25] == 2 && file[26] == 0 && file[27] == 0 && file[28] == 0;
-    if (good) {
+    good = good && at == n && memcmp(file + 12, "IHDR", 4) == 0 && (!said || pictures == said->pictures);
+    if (good && file[24] == 8 && file[25] == 2 && file[26] == 0 && file[27] == 0 && file[28] == 0) {
         *width = (int)big(file + 16);
         *height = (int)big(file + 20);
-        raw = (3 * (size_t)*width + 1) * (size_t)*height;
-        out = (unsigned char *)malloc(raw);
-        z.in = data + 2;
-        z.n = packed - 6;
-        z.bit = 0;
-        good = out && (data[0] * 256 + data[1]) % 31 == 0 && inflate_all(&z, out, raw) == raw &&
-               (z.bit + 7) / 8 == z.n && adler(out, raw) == big(data + packed - 4);
-        if (good) unfilter(out, *width, *height);
+        out = read_rows(data, packed, *width, *height);
     }
     free(file);
     free(data);
-    if (good) return out;
-    free(out);
-    return NULL;
+    return out;
+}
+
+static inline unsigned char *read_png(const char *path, int *width, int *height)
+{
+    return read_picture(path, 0, width, height, NULL);
 }
 
 #endif

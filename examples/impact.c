@@ -20,39 +20,71 @@ static const char *metals(const impact *s, char *text, size_t n)
     return text;
 }
 
-/* Plastic strain and temperature of the whole cross-section. */
-static void describe_picture(const impact *s, const impact_case *c, const output *o, output_picture *p)
+/* "al, 14 um at 810 m/s" */
+static void write_title(const impact *s, const impact_case *c, char *title, size_t n)
 {
-    const mpm_material *a = &s->material[IMPACT_PARTICLE], *b = &s->material[IMPACT_SUBSTRATE];
-    const double cold = (double)(a->temperature < b->temperature ? a->temperature : b->temperature);
-    const double melt = (double)(a->melt_temperature > b->melt_temperature ? a->melt_temperature : b->melt_temperature);
     char name[64];
-    output_cuts(o, &s->world, c->spacing, s->world.points.temperature, p);
+    snprintf(title, n, "%s, %g um at %g m/s", metals(s, name, sizeof name), c->diameter, c->velocity);
+}
+
+/* Colours: to the melting point; pressure to half of what the first shock makes; stress to what the harder metal bears
+   at a strain of 1 at a million per second. */
+static output_range colors(const impact *s, const impact_case *c)
+{
+    output_range r = {4, 0, 0, 0, 0, 0};
+    double melt = 0;
+    int k;
+    r.cold = HUGE_VAL;
+    for (k = 0; k < 2; k++) {
+        const mpm_material *m = &s->material[k];
+        const mpm_material_state flows = {1, 1, m->temperature, m->density, 0};
+        mpm_real p, shear;
+        mpm_material_wave_speeds(m, m->density, &p, &shear);
+        r.cold = fmin(r.cold, (double)m->temperature);
+        melt = fmax(melt, (double)m->melt_temperature);
+        r.pressure = fmax(r.pressure, (double)(m->density * p) * fabs(c->velocity) / 4);
+        r.mises = fmax(r.mises, (double)mpm_material_flow_stress(m, &flows));
+    }
+    r.hot = melt > r.cold ? melt : r.cold + 600;
+    r.pressure = mpm_draw_nice(fmax(r.pressure, 100));
+    r.mises = 2 * mpm_draw_nice(fmax(r.mises, 1));
+    r.speed = fmax(fabs(c->velocity), 1);
+    return r;
+}
+
+/* What was asked for of the whole cross-section, or from outside. Returns 1, or 0 after a message. */
+static int describe_picture(const impact *s, const impact_case *c, const output *o, output_picture *p)
+{
+    const output_range r = colors(s, c);
+    if (!output_fields(o, &s->world, c->spacing, &r, p)) return 0;
     output_window(p, 1.1 * c->substrate_diameter / 2, -1.05 * c->substrate_height,
                   1.1 * (2 * impact_half_height(c) + (c->gap > 0 ? c->gap : 0)));
-    output_heat(p, cold, melt > cold ? melt : cold + 600);
-    snprintf(p->title, sizeof p->title, "%s, %g um at %g m/s", metals(s, name, sizeof name), c->diameter, c->velocity);
+    write_title(s, c, p->title, sizeof p->title);
+    return output_outline(o, p, &s->world, &s->surfaces);
 }
 
 static int write_frame(const impact *s, const impact_case *c, output *o)
 {
     output_picture p;
-    int ok;
-    describe_picture(s, c, o, &p);
-    ok = output_outline(&p, &s->world, &s->surfaces) && output_surfaces(o, &s->world, &s->surfaces) &&
-         output_frame(o, &s->world, NULL, 0, &p);
-    free(p.outline);
+    const int ok = describe_picture(s, c, o, &p) && output_surfaces(o, &s->world, &s->surfaces) &&
+                   output_frame(o, &s->world, NULL, 0, &p);
+    output_picture_free(&p);
     return ok;
 }
 
-static int write_pictures(const impact *s, const impact_case *c, output *o, const history *past)
+/* The last picture, with the verdict if the run came to its end; the film; the curves. */
+static int write_pictures(const impact *s, const impact_case *c, const impact_result *r, output *o,
+                          const history *past)
 {
     output_picture p;
-    int ok;
-    describe_picture(s, c, o, &p);
-    ok = output_outline(&p, &s->world, &s->surfaces) && output_png(o, &p, "impact.png") &&
+    char title[160];
+    int ok = describe_picture(s, c, o, &p);
+    write_title(s, c, title, sizeof title);
+    if (s->world.steps >= s->steps)
+        snprintf(p.title, sizeof p.title, "%.140s: %s", title, impact_stays(s, r) ? "stays" : "rebounds");
+    ok = ok && output_png(o, &p, "impact.png") && output_film(o, title) &&
          impact_history_png(past, o->folder, p.title);
-    free(p.outline);
+    output_picture_free(&p);
     return ok;
 }
 
@@ -233,11 +265,28 @@ static int finish(const impact *s, const impact_case *c, output *o, const histor
 {
     const impact_result r = impact_measure(s, c);
     if (!write_summary(s, &r, o, options, n) || !history_csv(past, o->folder)) return 0;
-    if (o->frames > 0 && !write_pictures(s, c, o, past)) return 0;
+    if (o->frames > 0 && !write_pictures(s, c, &r, o, past)) return 0;
     if (o->quiet) return 1;
     print_table(s, c, &r, o->cpu);
     printf("\n  %s/summary.json, history.csv%s\n", o->folder,
-           o->frames > 0 ? ", history.png, impact.png, impact.pvd" : "");
+           o->frames > 1   ? ", history.png, impact.png, film.png, impact.pvd"
+           : o->frames > 0 ? ", history.png, impact.png, impact.pvd" : "");
+    return 1;
+}
+
+/* Checks what pictures are to show. */
+static int shows(const impact_case *c, const output *o, char *message, size_t n)
+{
+    const int place = word_place(IMPACT_GEOMETRIES, c->geometry); /* an unknown one is refused later */
+    char word[32];
+    int k;
+    if (!output_picture_check(o, place == 1 ? MPM_AXISYMMETRIC : MPM_3D, message, n)) return 0;
+    for (k = 0; output_shown(o, k, word) >= 0; k++) {
+        if (strcmp(c->contact, "surface") || output_shown(o, k, word) != SHOWN_BOND) continue;
+        snprintf(message, n, "--fields %s: bond is the D of contact at nodes; of surfaces look into surface.pvd",
+                 o->shown);
+        return 0;
+    }
     return 1;
 }
 
@@ -249,8 +298,8 @@ static int carry_out(int argc, char **argv)
     option options[IMPACT_OPTIONS];
     int n = impact_options(&c, options);
     const char *about = "A metal particle hits a metal plate: material point method with bonding.\n"
-                        "Writes summary.json, history.csv, impact.png, history.png, impact.pvd (ParaView) and frames into\n"
-                        "the output folder.";
+                        "Writes summary.json, history.csv, history.png, impact.png, film.png, impact.pvd (ParaView) and\n"
+                        "frames into the output folder.";
     char message[300];
     restart again;
     history past;
@@ -258,13 +307,14 @@ static int carry_out(int argc, char **argv)
     int of_case = n, of_run, parsed, status;
     memset(&again, 0, sizeof again);
     output_options(&o, options, &n);
+    output_picture_options(&o, options, &n);
     of_run = n;
     restart_options(&again, options, &n);
     parsed = options_parse(argc, argv, about, options, n);
     if (parsed) return parsed < 0 ? 1 : 0;
     impact_complete(&c);
     if (!output_check(&o, message, sizeof message) || !restart_check(&again, message, sizeof message) ||
-        !impact_begin(&s, &c, message, sizeof message))
+        !shows(&c, &o, message, sizeof message) || !impact_begin(&s, &c, message, sizeof message))
         return !complain(message);
     impact_history_begin(&past, s.steps);
     restart_describe(&again, &s.world, &s.surfaces, &o, &s.start, &past, s.dt, options, of_case);

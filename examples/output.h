@@ -17,6 +17,7 @@ typedef struct output {
     const char *length, *time;  /* units; a thousand of the unit of time are one of the world's */
     double rate;                /* a strain rate of the world, in 1/us */
     int64_t frames;             /* wanted, evenly in time, both ends included; 1: of the end */
+    const char *shown, *view;   /* what pictures show, with commas between; from where */
     int quiet;
     int64_t hdf5;               /* all frames in one file too: how it is packed, 0 .. 9; -1: no */
 
@@ -38,6 +39,8 @@ static inline output output_of(const char *folder, const char *name, const char 
     o.rate = rate;
     o.frames = 9;
     o.hdf5 = -1;
+    o.shown = "strain,temperature";
+    o.view = "cut";
     return o;
 }
 
@@ -100,53 +103,181 @@ static inline int output_due(const output *o, const mpm_world *w, int64_t steps)
 
 /* ---- pictures ------------------------------------------------------------------------------ */
 
-/* Two cuts of the whole cross-section. Do not copy: the cuts point to the texts. */
+/* What --fields can show of the points. */
+#define OUTPUT_SHOWN "strain|temperature|pressure|mises|velocity|bond"
+enum { SHOWN_STRAIN, SHOWN_TEMPERATURE, SHOWN_PRESSURE, SHOWN_MISES, SHOWN_VELOCITY, SHOWN_BOND, OUTPUT_PANELS };
+#define OUTPUT_VIEWS "cut|3d"
+
+/* Ranges of colours, the same in all pictures of a run; pressure goes from -pressure to pressure. */
+typedef struct output_range {
+    double strain, cold, hot, pressure, mises, speed; /* 1, K, K, MPa, MPa, m/s */
+} output_range;
+
+/* The options of a program whose pictures can show several fields. */
+static inline void output_picture_options(output *o, option *options, int *n)
+{
+    option_add(options, n, "fields", OPTION_TEXT, &o->shown,
+               "what pictures show, with commas between: strain, temperature, pressure, mises, velocity, bond");
+    option_add_word(options, n, "view", &o->view, OUTPUT_VIEWS, "a section, or the bodies from outside (geometry 3d)");
+}
+
+/* Number `k` of the fields to be shown: its place in the list; -1: there are not so many, -2: not in the list, with its
+   name in word[]. */
+static inline int output_shown(const output *o, int k, char word[32])
+{
+    const char *at = o->shown;
+    size_t n;
+    for (; k > 0 && at; k--) at = (at = strchr(at, ',')) != NULL ? at + 1 : NULL;
+    if (!at) return -1;
+    n = strcspn(at, ",");
+    snprintf(word, 32, "%.*s", n < 31 ? (int)n : 31, at);
+    return n < 31 && word_place(OUTPUT_SHOWN, word) >= 0 ? word_place(OUTPUT_SHOWN, word) : -2;
+}
+
+/* Checks them, of a run in that geometry. Test: 67_history. */
+static inline int output_picture_check(const output *o, mpm_geometry geometry, char *message, size_t n)
+{
+    int seen[OUTPUT_PANELS] = {0}, k, field;
+    char word[32] = "";
+    for (k = 0; (field = output_shown(o, k, word)) != -1; k++) {
+        if (field >= 0 && !seen[field]++) continue;
+        snprintf(message, n, "--fields %s: '%s' is %s " OUTPUT_SHOWN, o->shown, word,
+                 field < 0 ? "not one of" : "there twice; once each of");
+        return 0;
+    }
+    if (!case_knows(OUTPUT_VIEWS, "view", o->view, message, n)) return 0;
+    if (!strcmp(o->view, "cut") || geometry == MPM_3D) return 1;
+    snprintf(message, n, "--view %s: needs --geometry 3d", o->view);
+    return 0;
+}
+
+/* The surfaces of bodies as triangles, with the point nearest to each corner. */
+typedef struct output_mesh {
+    mpm_real *x[3], *value;
+    int32_t *body, *near, (*triangle)[3];
+    size_t places, triangles;
+} output_mesh;
+
+/* Sections of the whole, or views from outside. Do not copy: the cuts point to the texts. */
 typedef struct output_picture {
-    mpm_draw_cut_desc cut[2];
+    mpm_draw_cut_desc cut[OUTPUT_PANELS];
+    int panels;
     char title[160], time[32];
-    double (*outline)[4]; /* of output_outline; for free */
+    double (*outline)[4]; /* of output_outline */
+    mpm_real *made;       /* values worked out for it */
+    output_mesh mesh;     /* of output_outline, in a view from outside */
 } output_picture;
 
-/* Plastic strain, and a second value of the points (NULL: the bodies). Title, window and the range of the
-   second are left to be set. spacing: of the points; with a mirror at y = 0 the cut goes through the first
-   layer of them. */
-static inline void output_cuts(const output *o, const mpm_world *w, double spacing, const mpm_real *second,
-                               output_picture *p)
+static inline void output_picture_free(output_picture *p)
+{
+    free(p->outline);
+    free(p->made);
+    free(p->mesh.x[0]);
+    free(p->mesh.near);
+    p->outline = NULL;
+    p->made = p->mesh.x[0] = NULL;
+    p->mesh.near = NULL;
+}
+
+/* `panels` cuts, of which only the label, the values and their colours are left to be set. spacing: of the points; with
+   a mirror at y = 0 the cut goes through the first layer of them. */
+static inline void output_panels(const output *o, const mpm_world *w, double spacing, int panels, output_picture *p)
 {
     int i;
+    p->panels = panels;
     p->outline = NULL;
+    p->made = NULL;
+    p->title[0] = 0;
+    memset(&p->mesh, 0, sizeof p->mesh);
     snprintf(p->time, sizeof p->time, "t = %.1f %s", (double)w->time * 1e3, o->time);
-    for (i = 0; i < 2; i++) {
-        p->cut[i] = mpm_draw_cut_of(w, i ? second : w->points.plastic_strain);
+    for (i = 0; i < panels; i++) {
+        p->cut[i] = mpm_draw_cut_of(w, NULL);
         p->cut[i].at = w->desc.geometry == MPM_3D && w->desc.side[2] == MPM_SIDE_SYMMETRY ? spacing / 2 : 0;
         p->cut[i].mirror = w->desc.side[0] == MPM_SIDE_SYMMETRY;
         p->cut[i].length_unit = o->length;
         p->cut[i].time = p->time;
     }
     p->cut[0].title = p->title;
-    p->cut[0].label = "effective plastic strain";
-    p->cut[0].low = 0;
-    p->cut[0].high = 4;
+}
+
+static inline void output_colors(mpm_draw_cut_desc *d, const mpm_real *value, const char *label, mpm_draw_map map,
+                                 double low, double high)
+{
+    d->value = value;
+    d->label = label;
+    d->map = map;
+    d->low = low;
+    d->high = high;
+}
+
+/* Plastic strain and bodies. Title and window are left to be set. */
+static inline void output_bodies(const output *o, const mpm_world *w, double spacing, output_picture *p)
+{
+    output_panels(o, w, spacing, 2, p);
+    output_colors(&p->cut[0], w->points.plastic_strain, "effective plastic strain", MPM_DRAW_DEEP, 0, 4);
+}
+
+/* Pressure, equivalent stress and speed of all points, one array after the other. */
+static inline void output_make(const mpm_points *p, mpm_real *made)
+{
+    const size_t n = (size_t)p->count;
+    size_t i;
+    for (i = 0; i < n; i++) {
+        const mpm_real *const *s = (const mpm_real *const *)p->stress, *const *v = (const mpm_real *const *)p->v;
+        const double a = (double)(s[0][i] - s[1][i]), b = (double)(s[1][i] - s[2][i]), c = (double)(s[2][i] - s[0][i]);
+        const double shear = (double)(s[3][i] * s[3][i] + s[4][i] * s[4][i] + s[5][i] * s[5][i]);
+        made[i] = -(s[0][i] + s[1][i] + s[2][i]) / 3;
+        made[n + i] = (mpm_real)sqrt((a * a + b * b + c * c) / 2 + 3 * shear);
+        made[2 * n + i] = (mpm_real)sqrt((double)(v[0][i] * v[0][i] + v[1][i] * v[1][i] + v[2][i] * v[2][i]));
+    }
+}
+
+/* The fields that were asked for. Title and window are left to be set. Returns 1, or 0 after a message. */
+static inline int output_fields(const output *o, const mpm_world *w, double spacing, const output_range *r,
+                                output_picture *p)
+{
+    const mpm_points *q = &w->points;
+    const size_t n = (size_t)q->count;
+    char word[32];
+    int k, panels = 0;
+    while (output_shown(o, panels, word) >= 0) panels++;
+    output_panels(o, w, spacing, panels, p);
+    p->made = (mpm_real *)malloc(3 * n * sizeof *p->made);
+    if (!p->made) return complain("no memory for a picture");
+    output_make(q, p->made);
+    for (k = 0; k < panels; k++) {
+        mpm_draw_cut_desc *d = &p->cut[k];
+        switch (output_shown(o, k, word)) {
+        case SHOWN_STRAIN:
+            output_colors(d, q->plastic_strain, "effective plastic strain", MPM_DRAW_DEEP, 0, r->strain);
+            break;
+        case SHOWN_TEMPERATURE:
+            output_colors(d, q->temperature, "temperature (K)", MPM_DRAW_HEAT, r->cold, r->hot);
+            break;
+        case SHOWN_PRESSURE:
+            output_colors(d, p->made, "pressure (MPa)", MPM_DRAW_DIVERGING, -r->pressure, r->pressure);
+            break;
+        case SHOWN_MISES:
+            output_colors(d, p->made + n, "equivalent stress (MPa)", MPM_DRAW_DEEP, 0, r->mises);
+            break;
+        case SHOWN_VELOCITY:
+            output_colors(d, p->made + 2 * n, "speed (m/s)", MPM_DRAW_DEEP, 0, r->speed);
+            break;
+        default: output_colors(d, q->bond, "bond D", MPM_DRAW_HEAT, 0, 1); break;
+        }
+    }
+    return 1;
 }
 
 static inline void output_window(output_picture *p, double edge, double bottom, double top)
 {
     int i;
-    for (i = 0; i < 2; i++) {
+    for (i = 0; i < p->panels; i++) {
         p->cut[i].window[0] = -edge;
         p->cut[i].window[1] = edge;
         p->cut[i].window[2] = bottom;
         p->cut[i].window[3] = top;
     }
-}
-
-/* The second cut shows temperature from low to high, K. */
-static inline void output_heat(output_picture *p, double low, double high)
-{
-    p->cut[1].label = "temperature (K)";
-    p->cut[1].map = MPM_DRAW_HEAT;
-    p->cut[1].low = low;
-    p->cut[1].high = high;
 }
 
 /* Where a face lies in the cut: a line as it is, a triangle where it crosses the plane y = at; 0 if it does not. */
@@ -164,8 +295,126 @@ static inline int output_crossing(const mpm_surface *c, int32_t face, double at,
     return n == 2;
 }
 
-/* Draws the surfaces of bodies over both cuts; p->outline is then to be freed. Returns 1, or 0 after a message. */
-static inline int output_outline(output_picture *p, const mpm_world *w, const mpm_surfaces *s)
+/* Points of a body in lists, by the cells of the grid. */
+typedef struct output_lists {
+    const mpm_world *w;
+    int32_t *head, *next; /* per cell: its last point, counted in the body, -1: none; per point: the one before it */
+    size_t cells[3];
+} output_lists;
+
+static inline size_t output_cell(const output_lists *l, const mpm_real *x, int axis)
+{
+    const mpm_desc *g = &l->w->desc;
+    const double at = ((double)x[axis] - (double)g->origin[axis]) / (double)g->cell;
+    return at < 1 ? 0 : at < (double)l->cells[axis] ? (size_t)at : l->cells[axis] - 1;
+}
+
+static inline int32_t *output_list(const output_lists *l, size_t i, size_t j, size_t k)
+{
+    return &l->head[(k * l->cells[1] + j) * l->cells[0] + i];
+}
+
+/* Sorts a body's points into them. */
+static inline void output_sort(output_lists *l, const mpm_body *b)
+{
+    mpm_real *const *x = (mpm_real *const *)l->w->points.x;
+    int32_t i, *head;
+    int k;
+    memset(l->head, 0xff, l->cells[0] * l->cells[1] * l->cells[2] * sizeof *l->head); /* -1 */
+    for (i = 0; i < b->active; i++) {
+        mpm_real at[3];
+        for (k = 0; k < 3; k++) at[k] = x[k][b->first + i];
+        head = output_list(l, output_cell(l, at, 0), output_cell(l, at, 1), output_cell(l, at, 2));
+        l->next[i] = *head;
+        *head = i;
+    }
+}
+
+/* The point nearest to a place, among those in its cell and around it; the body's first if there is none. */
+static inline int32_t output_nearest(const output_lists *l, const mpm_body *b, const mpm_real x[3])
+{
+    const mpm_points *p = &l->w->points;
+    double least = HUGE_VAL;
+    int32_t best = b->first, i;
+    size_t from[3], to[3], c[3];
+    int k;
+    for (k = 0; k < 3; k++) {
+        const size_t at = output_cell(l, x, k);
+        from[k] = at > 0 ? at - 1 : 0;
+        to[k] = at + 1 < l->cells[k] ? at + 1 : at;
+    }
+    for (c[2] = from[2]; c[2] <= to[2]; c[2]++)
+        for (c[1] = from[1]; c[1] <= to[1]; c[1]++)
+            for (c[0] = from[0]; c[0] <= to[0]; c[0]++)
+                for (i = *output_list(l, c[0], c[1], c[2]); i >= 0; i = l->next[i]) {
+                    const int32_t q = b->first + i;
+                    const double dx = (double)(p->x[0][q] - x[0]), dy = (double)(p->x[1][q] - x[1]);
+                    const double dz = (double)(p->x[2][q] - x[2]), d = dx * dx + dy * dy + dz * dz;
+                    if (d < least) least = d, best = q;
+                }
+    return best;
+}
+
+/* Room for all markers and triangles. Returns 1, or 0 without memory. */
+static inline int output_mesh_room(output_mesh *m, const mpm_surfaces *s)
+{
+    int32_t a;
+    for (a = 0; a < s->surfaces; a++) {
+        m->places += (size_t)s->surface[a].markers;
+        m->triangles += (size_t)s->surface[a].faces;
+    }
+    m->x[0] = (mpm_real *)malloc(4 * m->places * sizeof *m->x[0]);
+    m->near = (int32_t *)malloc((2 * m->places + 3 * m->triangles) * sizeof *m->near);
+    if (!m->x[0] || !m->near) return 0;
+    m->x[1] = m->x[0] + m->places;
+    m->x[2] = m->x[1] + m->places;
+    m->value = m->x[2] + m->places;
+    m->body = m->near + m->places;
+    m->triangle = (int32_t(*)[3])(void *)(m->body + m->places);
+    return 1;
+}
+
+/* Adds one surface behind those in front of it. */
+static inline void output_mesh_add(output_mesh *m, output_lists *l, const mpm_surface *c, int32_t place, size_t face)
+{
+    const mpm_body *b = &l->w->body[c->body];
+    int32_t i;
+    int k;
+    output_sort(l, b);
+    for (i = 0; i < c->faces; i++)
+        for (k = 0; k < 3; k++) m->triangle[face + (size_t)i][k] = place + c->face[i][k];
+    for (i = 0; i < c->markers; i++) {
+        for (k = 0; k < 3; k++) m->x[k][place + i] = c->marker[i].x[k];
+        m->near[place + i] = output_nearest(l, b, c->marker[i].x);
+        m->body[place + i] = c->body;
+    }
+}
+
+/* The surfaces of all bodies. Returns 1, or 0 after a message. */
+static inline int output_mesh_of(output_mesh *m, const mpm_world *w, const mpm_surfaces *s)
+{
+    output_lists l;
+    size_t face = 0;
+    int32_t a, place = 0;
+    int k, ok;
+    l.w = w;
+    for (k = 0; k < 3; k++) l.cells[k] = (size_t)w->desc.cells[k];
+    l.head = (int32_t *)malloc(l.cells[0] * l.cells[1] * l.cells[2] * sizeof *l.head);
+    l.next = (int32_t *)malloc((size_t)w->points.count * sizeof *l.next);
+    ok = (output_mesh_room(m, s) && l.head && l.next) || complain("no memory for surfaces");
+    for (a = 0; a < s->surfaces && ok; a++) {
+        output_mesh_add(m, &l, &s->surface[a], place, face);
+        place += s->surface[a].markers;
+        face += (size_t)s->surface[a].faces;
+    }
+    free(l.head);
+    free(l.next);
+    return ok;
+}
+
+/* Draws the surfaces of bodies over all cuts; in a view from outside they are the bodies. Returns 1, or 0 after a
+   message. */
+static inline int output_outline(const output *o, output_picture *p, const mpm_world *w, const mpm_surfaces *s)
 {
     const double at = p->cut[0].at + 1e-4 * (double)w->desc.cell; /* a mirror is no place to look at triangles from */
     int32_t a, i;
@@ -173,15 +422,62 @@ static inline int output_outline(output_picture *p, const mpm_world *w, const mp
     int k;
     for (a = 0; a < s->surfaces; a++) n += (size_t)s->surface[a].faces;
     if (n == 0) return 1;
+    if (strcmp(o->view, "cut")) return output_mesh_of(&p->mesh, w, s);
     p->outline = (double(*)[4])malloc(n * sizeof *p->outline);
     if (!p->outline) return complain("no memory for outlines");
     for (a = 0, n = 0; a < s->surfaces; a++)
         for (i = 0; i < s->surface[a].faces; i++) n += (size_t)output_crossing(&s->surface[a], i, at, p->outline[n]);
-    for (k = 0; k < 2; k++) {
+    for (k = 0; k < p->panels; k++) {
         p->cut[k].line_count = n;
         p->cut[k].lines = (const double(*)[4])p->outline;
     }
     return 1;
+}
+
+/* A panel's view from outside: of surfaces if there are any, else of the points as balls. */
+static inline mpm_draw_solid_desc output_solid(const output_picture *p, int panel)
+{
+    const mpm_draw_cut_desc *cut = &p->cut[panel];
+    const output_mesh *m = &p->mesh;
+    mpm_draw_solid_desc d = mpm_draw_solid_of(cut->world, cut->value);
+    size_t i;
+    int k;
+    for (k = 0; k < 4; k++) d.box[k] = cut->window[k % 2];
+    for (k = 4; k < 6; k++) d.box[k] = cut->window[k - 2];
+    d.map = cut->map;
+    d.low = cut->low;
+    d.high = cut->high;
+    d.label = cut->label;
+    d.title = cut->title;
+    d.time = cut->time;
+    d.length_unit = cut->length_unit;
+    if (m->triangles == 0) return d;
+    for (i = 0; i < m->places && cut->value; i++) m->value[i] = cut->value[m->near[i]];
+    for (k = 0; k < 3; k++) d.x[k] = m->x[k];
+    d.world = NULL;
+    d.count = m->places;
+    d.body = m->body;
+    d.triangles = m->triangles;
+    d.triangle = (const int32_t(*)[3])m->triangle;
+    d.value = cut->value ? m->value : NULL;
+    return d;
+}
+
+/* All panels on a canvas of their own: up to three beside each other. */
+static inline mpm_status output_draw(const output *o, const output_picture *p, mpm_draw_canvas *c, mpm_fault *fault)
+{
+    const int columns = p->panels <= 3 ? p->panels : (p->panels + 1) / 2, rows = (p->panels - 1) / columns + 1;
+    mpm_status status;
+    int k;
+    if (!strcmp(o->view, "cut")) return mpm_draw_cuts(c, p->cut, p->panels, columns, 800, fault);
+    status = mpm_draw_canvas_init(c, 800 * columns, 720 * rows, NULL, 0);
+    if (status < 0) return mpm_fail(fault, status, "size of picture", 720 * rows, -1);
+    for (k = 0; k < p->panels && status >= 0; k++) {
+        const mpm_draw_solid_desc d = output_solid(p, k);
+        status = mpm_draw_solid(c, mpm_draw_tile(c, columns, rows, k), &d, fault);
+    }
+    if (status < 0) mpm_draw_canvas_free(c);
+    return status;
 }
 
 static inline int output_png(output *o, const output_picture *p, const char *name)
@@ -190,7 +486,7 @@ static inline int output_png(output *o, const output_picture *p, const char *nam
     char path[PATH_BYTES];
     mpm_draw_canvas c;
     mpm_fault fault;
-    int ok = mpm_draw_cuts(&c, p->cut, 2, 2, 800, &fault) >= 0;
+    int ok = output_draw(o, p, &c, &fault) >= 0;
     file_in(o->folder, name, path, sizeof path);
     if (ok) {
         ok = mpm_io_png(path, c.rgb, c.width, c.height, p->title, &fault) >= 0;
@@ -198,6 +494,26 @@ static inline int output_png(output *o, const output_picture *p, const char *nam
     }
     o->writing += clock() - mark;
     return ok || report(&fault, path);
+}
+
+/* All pictures of frames so far as one film, film.png; of one picture there is none. */
+static inline int output_film(output *o, const char *note)
+{
+    const clock_t mark = clock();
+    char path[PATH_BYTES], frame[PATH_BYTES], name[64];
+    mpm_io_film film;
+    mpm_fault fault;
+    int64_t k;
+    if (o->frame < 2) return 1;
+    file_in(o->folder, "film.png", path, sizeof path);
+    mpm_io_film_begin(&film, path, o->frame > 40 ? 4.0 / (double)o->frame : 0.1 + 3.0 / (double)o->frame, note, &fault);
+    for (k = 0; k < o->frame && film.status >= 0; k++) {
+        snprintf(name, sizeof name, "frame_%04lld.png", (long long)k);
+        if (k + 1 == o->frame) film.seconds = 2; /* the end is looked at */
+        if (mpm_io_film_add_png(&film, file_in(o->folder, name, frame, sizeof frame), &fault) < 0) report(&fault, frame);
+    }
+    o->writing += clock() - mark;
+    return mpm_io_film_end(&film, &fault) >= 0 || report(&fault, path);
 }
 
 /* ---- frames -------------------------------------------------------------------------------- */

@@ -141,7 +141,7 @@ static void describe_picture(const impact *s, const impact_case *c, const pull_c
                              output_picture *picture)
 {
     const output out = output_of(o->folder, "pull", "um", "ns", 1);
-    output_cuts(&out, &s->world, c->spacing, NULL, picture);
+    output_bodies(&out, &s->world, c->spacing, picture);
     output_window(picture, 1.1 * c->substrate_diameter / 2, -1.05 * c->substrate_height,
                   2.2 * impact_half_height(c) + p->separation);
     snprintf(picture->title, sizeof picture->title, "%g um at %g m/s, drawn off", c->diameter, c->velocity);

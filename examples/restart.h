@@ -57,6 +57,8 @@ static inline void restart_describe(restart *r, mpm_world *w, mpm_surfaces *surf
     r->past = past;
     for (k = 0; k < n; k++) used = mpm_io_line(text, RESTART_TEXT, used, o[k].name, option_text(&o[k], number));
     used = mpm_io_line_number(text, RESTART_TEXT, used, "frames", (double)out->frames);
+    used = mpm_io_line(text, RESTART_TEXT, used, "fields", out->shown);
+    used = mpm_io_line(text, RESTART_TEXT, used, "view", out->view);
     used = mpm_io_line_number(text, RESTART_TEXT, used, "dt", (double)dt);
     mpm_io_world_text(text + used, RESTART_TEXT - used, w);
 }

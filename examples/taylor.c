@@ -11,14 +11,31 @@
 #include "taylor_history.h"
 #include "restart.h"
 
-/* Plastic strain and temperature of the section through the axis. */
-static void describe_picture(const taylor *s, const taylor_case *c, const output *o, output_picture *p)
+/* Colours: pressure to a tenth of what the first shock makes, which is gone at once; stress to twice what the metal
+   bears at a strain of 1 at a thousand per second. */
+static output_range colors(const taylor *s, const taylor_case *c)
 {
-    output_cuts(o, &s->world, s->spacing, s->world.points.temperature, p);
+    const mpm_material *m = &s->material;
+    const mpm_material_state flows = {1, 1, m->temperature, m->density, 0};
+    output_range r = {3, 0, 0, 0, 0, 0};
+    mpm_real p, shear;
+    mpm_material_wave_speeds(m, m->density, &p, &shear);
+    r.cold = c->temperature;
+    r.hot = c->temperature + 500;
+    r.pressure = mpm_draw_nice((double)(m->density * p) * c->velocity / 10);
+    r.mises = 2 * mpm_draw_nice(fmax((double)mpm_material_flow_stress(m, &flows), 1));
+    r.speed = c->velocity;
+    return r;
+}
+
+/* The section through the axis, or the bar from outside. Returns 1, or 0 after a message. */
+static int describe_picture(const taylor *s, const taylor_case *c, const output *o, output_picture *p)
+{
+    const output_range r = colors(s, c);
+    if (!output_fields(o, &s->world, s->spacing, &r, p)) return 0;
     output_window(p, 2.6 * s->radius, -0.03 * s->length, 1.05 * s->length);
-    output_heat(p, c->temperature, c->temperature + 500);
-    p->cut[0].high = 3;
     snprintf(p->title, sizeof p->title, "%s %s, %g m/s", c->material, c->model, c->velocity);
+    return 1;
 }
 
 /* With the places at which the points began. */
@@ -27,17 +44,27 @@ static int write_frame(const taylor *s, const taylor_case *c, output *o)
     const mpm_world *w = &s->world;
     mpm_io_field start[2];
     output_picture p;
-    int k;
+    int k, ok;
     for (k = 0; k < 2; k++) start[k] = mpm_io_scalar(w->user_name[k], w->points.user[k], 1);
-    describe_picture(s, c, o, &p);
-    return output_frame(o, w, start, 2, &p);
+    ok = describe_picture(s, c, o, &p) && output_frame(o, w, start, 2, &p);
+    output_picture_free(&p);
+    return ok;
 }
 
-static int write_pictures(const taylor *s, const taylor_case *c, output *o, const history *past)
+/* The last picture, with the sizes that codes compare if the run came to its end; the film; the curves. */
+static int write_pictures(const taylor *s, const taylor_case *c, const taylor_result *r, output *o,
+                          const history *past)
 {
     output_picture p;
-    describe_picture(s, c, o, &p);
-    return output_png(o, &p, "taylor.png") && taylor_history_png(past, o->folder, p.title);
+    char title[160];
+    int ok = describe_picture(s, c, o, &p);
+    memcpy(title, p.title, sizeof title);
+    if (s->world.steps >= s->steps)
+        snprintf(p.title, sizeof p.title, "%.90s: %.2f mm long, foot %.2f mm", title, r->length, r->radius);
+    ok = ok && output_png(o, &p, "taylor.png") && output_film(o, title) &&
+         taylor_history_png(past, o->folder, p.title);
+    output_picture_free(&p);
+    return ok;
 }
 
 static int write_profile(const taylor *s, const taylor_row *row, const output *o)
@@ -142,11 +169,12 @@ static int finish(const taylor *s, const taylor_case *c, output *o, const histor
     int ok = row && taylor_measure(s, c, row, &r);
     if (!ok) complain("no memory for the profile");
     ok = ok && write_summary(s, &r, o, options, n) && write_profile(s, row, o) && history_csv(past, o->folder);
-    if (ok && o->frames > 0) ok = write_pictures(s, c, o, past);
+    if (ok && o->frames > 0) ok = write_pictures(s, c, &r, o, past);
     if (ok && !o->quiet) {
         print_table(s, c, &r, o->cpu);
         printf("\n  %s/summary.json, profile.csv, history.csv%s\n", o->folder,
-               o->frames > 0 ? ", history.png, taylor.png, taylor.pvd" : "");
+               o->frames > 1   ? ", history.png, taylor.png, film.png, taylor.pvd"
+               : o->frames > 0 ? ", history.png, taylor.png, taylor.pvd" : "");
     }
     free(row);
     return ok;
@@ -179,19 +207,22 @@ static int carry_out(int argc, char **argv)
     option options[24];
     restart again;
     history past;
-    int n = options_of(&c, options), of_case = n, of_run, parsed, status;
+    int n = options_of(&c, options), of_case = n, of_run, parsed, status, place;
     const char *about = "A metal cylinder hits a rigid wall end on: Taylor's test.\n"
-                        "Writes summary.json, profile.csv, history.csv, taylor.png, history.png, taylor.pvd (ParaView)\n"
-                        "and frames.";
+                        "Writes summary.json, profile.csv, history.csv, history.png, taylor.png, film.png, taylor.pvd\n"
+                        "(ParaView) and frames.";
     char message[300];
     taylor s;
     memset(&again, 0, sizeof again);
     output_options(&o, options, &n);
+    output_picture_options(&o, options, &n);
     of_run = n;
     restart_options(&again, options, &n);
     parsed = options_parse(argc, argv, about, options, n);
     if (parsed) return parsed < 0 ? 1 : 0;
+    place = word_place(TAYLOR_GEOMETRIES, c.geometry); /* an unknown one is refused later */
     if (!output_check(&o, message, sizeof message) || !restart_check(&again, message, sizeof message) ||
+        !output_picture_check(&o, place == 1 ? MPM_3D : MPM_AXISYMMETRIC, message, sizeof message) ||
         !taylor_begin(&s, &c, message, sizeof message))
         return !complain(message);
     taylor_history_begin(&past, &s);

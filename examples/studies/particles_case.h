@@ -352,13 +352,13 @@ static inline int particles_frame(const impact *s, particles_case *q)
         edge = fmax(edge, fabs(q->center[k][0]) + width);
         top = fmax(top, q->center[k][2] + high);
     }
-    output_cuts(&q->out, &s->world, q->base.spacing, NULL, &picture);
+    output_bodies(&q->out, &s->world, q->base.spacing, &picture);
     output_window(&picture, 1.05 * edge, -1.05 * q->base.substrate_height, 1.05 * top);
     picture.cut[1].title = "bodies";
     particles_title(q, picture.title, sizeof picture.title);
-    ok = output_outline(&picture, &s->world, &s->surfaces) && output_surfaces(&q->out, &s->world, &s->surfaces) &&
+    ok = output_outline(&q->out, &picture, &s->world, &s->surfaces) && output_surfaces(&q->out, &s->world, &s->surfaces) &&
          output_frame(&q->out, &s->world, &field, 1, &picture);
-    free(picture.outline);
+    output_picture_free(&picture);
     free(partner);
     return ok;
 }
@@ -435,12 +435,13 @@ static inline double particles_pbcp(const impact *s, const particles_case *q)
     return 100 * case_share(bonded, touched);
 }
 
-/* history.csv, and history.png if pictures are wanted */
-static inline int particles_history(const particles_case *q, const history *past)
+/* history.csv, and history.png and film.png if pictures are wanted */
+static inline int particles_history(particles_case *q, const history *past)
 {
     char title[160];
     return history_csv(past, q->out.folder) &&
-           (q->out.frames == 0 || impact_history_png(past, q->out.folder, particles_title(q, title, sizeof title)));
+           (q->out.frames == 0 || (output_film(&q->out, particles_title(q, title, sizeof title)) &&
+                                   impact_history_png(past, q->out.folder, title)));
 }
 
 /* The checksum of both tables, which the summary keeps. */

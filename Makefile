@@ -23,7 +23,8 @@ STUDIES  = $(patsubst examples/studies/%.c,build/%,$(wildcard examples/studies/*
 PARTS    = $(patsubst examples/studies/%.c,build/parts/%.o,$(wildcard examples/studies/reproduction/*.c))
 TESTS    = $(patsubst tests/%.c,build/tests/%,$(wildcard tests/[0-9]*.c))
 # Tests that run programs, or read files of them, which are in double whatever the test is: no twin in float.
-DOUBLES  = $(addprefix tests/,12_material_program.c 54_spray_example.c 62_studies.c 65_log.c 72_method.c 75_ladder.c)
+DOUBLES  = $(addprefix tests/,12_material_program.c 54_spray_example.c 62_studies.c 65_log.c 67_history.c 72_method.c \
+           75_ladder.c)
 FLOATS   = $(patsubst tests/%.c,build/tests/%_f32,$(filter-out $(DOUBLES),$(wildcard tests/[0-9]*.c)))
 SCRIPTS  = tests/compile/run.sh $(sort $(wildcard tests/[0-9]*.sh))
 VERIFY   = $(patsubst tests/verify/%.c,build/verify/%,$(sort $(wildcard tests/verify/*.c)))

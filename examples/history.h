@@ -173,13 +173,13 @@ typedef struct history_panel {
     int column[HISTORY_CURVES + 1];
 } history_panel;
 
-/* Whether a column says anything. */
-static inline int history_says(const history *h, int column)
+/* The largest value of a column, whatever its sign. */
+static inline double history_most(const history *h, int column)
 {
+    double most = 0;
     int64_t i;
-    for (i = 0; i < h->rows; i++)
-        if (fabs(h->row[i][column]) > 0) return 1;
-    return 0;
+    for (i = 0; i < h->rows; i++) most = fmax(most, fabs(h->row[i][column]));
+    return most;
 }
 
 /* "v mean" of v_mean; "kinetic" of energy_kinetic in a panel called energy. */
@@ -193,18 +193,27 @@ static inline const char *history_name(const char *name, const char *title, char
     return text;
 }
 
-/* One panel; of several curves those that are nothing but zero are left out. y: room for all of them. */
+/* Whether a curve of a panel can be told from zero: of those that cannot, one is drawn if all are so. */
+static inline int history_shows(const history *h, const history_panel *p, int curve)
+{
+    double most = 0;
+    int k;
+    for (k = 0; p->column[k] >= 0; k++) most = fmax(most, history_most(h, p->column[k]));
+    return history_most(h, p->column[curve]) > 1e-6 * most || (curve == 0 && !(most > 0));
+}
+
+/* One panel. y: room for all its curves. */
 static inline mpm_status history_panel_draw(const history *h, const history_panel *p, const char *note,
                                             mpm_draw_canvas *c, mpm_draw_rect where, const mpm_real *x, mpm_real *y,
                                             mpm_fault *fault)
 {
-    char name[HISTORY_CURVES][HISTORY_KEY], label[40], unit[40];
+    char name[HISTORY_CURVES][HISTORY_KEY], label[40];
     mpm_draw_curve curve[HISTORY_CURVES];
     mpm_draw_plot_desc d = mpm_draw_plot_desc_default();
     int64_t i;
     int k, n = 0;
     for (k = 0; p->column[k] >= 0; k++) {
-        if (p->column[1] >= 0 && !history_says(h, p->column[k]) && !(n == 0 && p->column[k + 1] < 0)) continue;
+        if (!history_shows(h, p, k)) continue;
         for (i = 0; i < h->rows; i++) y[i] = (mpm_real)h->row[i][p->column[k]];
         curve[n].name = p->column[1] < 0 ? NULL : history_name(h->column[p->column[k]].name, p->title, name[n]);
         curve[n].count = (size_t)h->rows;
@@ -215,13 +224,12 @@ static inline mpm_status history_panel_draw(const history *h, const history_pane
         y += h->rows;
     }
     snprintf(label, sizeof label, "%s (%s)", h->column[0].name, h->column[0].unit);
-    snprintf(unit, sizeof unit, "%s", h->column[p->column[0]].unit);
     d.curves = curve;
     d.curve_count = n;
     d.title = p->title;
     d.note = note;
     d.x_label = label;
-    d.y_label = unit;
+    d.y_label = h->column[p->column[0]].unit;
     return mpm_draw_plot(c, where, &d, fault);
 }
 
@@ -240,7 +248,8 @@ static inline int history_png(const history *h, const char *folder, const histor
     int64_t i;
     int k;
     if (h->rows < 2) return 1;
-    if (!x || mpm_draw_canvas_init(&c, 1500, 440 * high, NULL, 0) < 0) return free(x), complain("no memory: history.png");
+    if (!x || mpm_draw_canvas_init(&c, 1500, 440 * high, NULL, 0) < 0)
+        return free(x), complain("no memory: history.png");
     for (i = 0; i < h->rows; i++) x[i] = (mpm_real)h->row[i][0];
     for (status = MPM_OK, k = 0; k < panels && status >= 0; k++)
         status = history_panel_draw(h, &panel[k], k ? NULL : title, &c, mpm_draw_tile(&c, 2, high, k), x, x + h->rows,

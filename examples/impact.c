@@ -298,8 +298,8 @@ static int carry_out(int argc, char **argv)
     option options[IMPACT_OPTIONS];
     int n = impact_options(&c, options);
     const char *about = "A metal particle hits a metal plate: material point method with bonding.\n"
-                        "Writes summary.json, history.csv, history.png, impact.png, film.png, impact.pvd (ParaView) and\n"
-                        "frames into the output folder.";
+                        "Writes summary.json, history.csv, history.png, impact.png, film.png, impact.pvd (ParaView)\n"
+                        "and frames into the output folder.";
     char message[300];
     restart again;
     history past;

@@ -1,5 +1,6 @@
 /* impact_history.h - the history of an impact: what history.csv says of particles and substrate. Of the whole model,
-   whatever of it the mirrors leave to be computed; particles are all bodies but the last. SPDX-License-Identifier: MIT */
+   whatever of it the mirrors leave to be computed; particles are all bodies but the last.
+   SPDX-License-Identifier: MIT */
 #ifndef IMPACT_HISTORY_H
 #define IMPACT_HISTORY_H
 
@@ -112,10 +113,19 @@ static inline void impact_history_sample(history *h, const impact *s)
     history_stress(&w->points, &row[IMPACT_MISES], &row[IMPACT_PRESSURE]);
 }
 
+/* Takes what others than the substrate gave the particles since the row before, momentum of the model, out of the force
+   of the last row. */
+static inline void impact_history_push(history *h, const impact *s, double momentum)
+{
+    double *row = h->row[h->rows - 1];
+    const double since = h->rows > 1 ? row[IMPACT_TIME] - h->row[h->rows - 2][IMPACT_TIME] : 0;
+    if (since > 0) row[IMPACT_FORCE] -= 1e3 * impact_copies(s) * momentum / since;
+}
+
 /* Its picture: of the bond G on surfaces, and D at nodes. */
 static inline int impact_history_png(const history *h, const char *folder, const char *title)
 {
-    const int bond = history_says(h, IMPACT_G) ? IMPACT_G : IMPACT_ABP;
+    const int bond = history_most(h, IMPACT_G) > 0 ? IMPACT_G : IMPACT_ABP;
     history_panel panel[8] = {
         {"energy", {IMPACT_KINETIC, IMPACT_ELASTIC, IMPACT_PLASTIC, IMPACT_ABSORBED, IMPACT_CONTACT, IMPACT_BOND,
                     IMPACT_WALLS, IMPACT_UNACCOUNTED, -1}},

@@ -442,6 +442,7 @@ static inline mpm_draw_solid_desc output_solid(const output_picture *p, int pane
     mpm_draw_solid_desc d = mpm_draw_solid_of(cut->world, cut->value);
     size_t i;
     int k;
+    d.mirror[2] = 0; /* the floor is a wall, not a mirror */
     for (k = 0; k < 4; k++) d.box[k] = cut->window[k % 2];
     for (k = 4; k < 6; k++) d.box[k] = cut->window[k - 2];
     d.map = cut->map;
@@ -467,11 +468,13 @@ static inline mpm_draw_solid_desc output_solid(const output_picture *p, int pane
 static inline mpm_status output_draw(const output *o, const output_picture *p, mpm_draw_canvas *c, mpm_fault *fault)
 {
     const int columns = p->panels <= 3 ? p->panels : (p->panels + 1) / 2, rows = (p->panels - 1) / columns + 1;
+    const double *window = p->cut[0].window, wide = window[1] - window[0], high = window[3] - window[2];
+    const int tall = (int)fmin(fmax(800 * (0.66 * high + 0.42 * wide) / wide, 500), 1100); /* room for what is seen */
     mpm_status status;
     int k;
     if (!strcmp(o->view, "cut")) return mpm_draw_cuts(c, p->cut, p->panels, columns, 800, fault);
-    status = mpm_draw_canvas_init(c, 800 * columns, 720 * rows, NULL, 0);
-    if (status < 0) return mpm_fail(fault, status, "size of picture", 720 * rows, -1);
+    status = mpm_draw_canvas_init(c, 800 * columns, tall * rows, NULL, 0);
+    if (status < 0) return mpm_fail(fault, status, "size of picture", (mpm_real)tall, -1);
     for (k = 0; k < p->panels && status >= 0; k++) {
         const mpm_draw_solid_desc d = output_solid(p, k);
         status = mpm_draw_solid(c, mpm_draw_tile(c, columns, rows, k), &d, fault);
@@ -510,10 +513,10 @@ static inline int output_film(output *o, const char *note)
     for (k = 0; k < o->frame && film.status >= 0; k++) {
         snprintf(name, sizeof name, "frame_%04lld.png", (long long)k);
         if (k + 1 == o->frame) film.seconds = 2; /* the end is looked at */
-        if (mpm_io_film_add_png(&film, file_in(o->folder, name, frame, sizeof frame), &fault) < 0) report(&fault, frame);
+        mpm_io_film_add_png(&film, file_in(o->folder, name, frame, sizeof frame), &fault);
     }
     o->writing += clock() - mark;
-    return mpm_io_film_end(&film, &fault) >= 0 || report(&fault, path);
+    return mpm_io_film_end(&film, &fault) >= 0 || report(&fault, k > 0 && film.pictures < o->frame ? frame : path);
 }
 
 /* ---- frames -------------------------------------------------------------------------------- */

@@ -100,12 +100,17 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
 {
     mpm_world *w = &s->world;
     const int whole = impact_copies(s);
+    double gripped = 0; /* momentum that the grip gave the particle since the last row of the history */
     mpm_interface met;
     progress line;
     progress_begin(&line, o->quiet);
     do {
         progress_part(&line, "pull, if they do not part before:", p->separation / o->distance);
-        if (history_due(past, w->steps, INT64_MAX)) impact_history_sample(past, s);
+        if (history_due(past, w->steps, INT64_MAX)) {
+            impact_history_sample(past, s);
+            impact_history_push(past, s, gripped);
+            gripped = 0;
+        }
         if (mpm_locate(w, s->dt) < 0) return report(&w->fault, "locate");
         mpm_calm(w);
         mpm_p2g(w);
@@ -125,6 +130,7 @@ static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, c
             mpm_io_csv_integer(table, met.held);
             if (met.nodes == 0) break;
         }
+        gripped += p->grip[0].impulse[2];
         mpm_g2p(w);
         mpm_musl(w);
         if (mpm_stress(w) < 0) return report(&w->fault, "stress");

@@ -879,7 +879,8 @@ static void test_solid_world(void)
     d.turn = d.lift = 0;
     d.label = "temperature (K)";
     CHECK_EQUAL("its points as balls", mpm_draw_solid(&c, all, &d, &f), MPM_OK);
-    CHECK_RELATIVE("... on both sides of the mirror", darkness(&c, 0, 0, 200, 200), darkness(&c, 200, 0, 400, 200), 0.01);
+    CHECK_RELATIVE("... on both sides of the mirror", darkness(&c, 0, 0, 200, 200), darkness(&c, 200, 0, 400, 200),
+                   0.01);
     CHECK_EQUAL("written", mpm_io_png(FOLDER "/solid.png", c.rgb, c.width, c.height, NULL, &f), MPM_OK);
     mpm_draw_canvas_free(&c);
     mpm_free(&w);

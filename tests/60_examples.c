@@ -168,7 +168,7 @@ static void restarts(void)
                                       "--method surface --geometry 3d --cell 2 --spacing 1 --time 6 --margin 0.5 "
                                       "--substrate-diameter 24 --substrate-height 8 --adhesion-critical 100"};
     static const char *const file[] = {"summary.json", "impact.pvd", "points_0001.vtu", "points_0002.vtu",
-                                       "surface.pvd", "surface_0002.vtu"};
+                                       "history.csv", "history.png", "film.png", "surface.pvd", "surface_0002.vtu"};
     char line[400];
     int k, i;
     for (k = 0; k < 3; k++) {
@@ -182,7 +182,7 @@ static void restarts(void)
         CHECK_TRUE("... which it says", strstr(text_of("build/tests/impact.err"), "velocity 811") != NULL);
         snprintf(line, sizeof line, "%s --frames 3 --resume --out build/tests/parts", how[k]);
         CHECK_EQUAL("... goes on", run(line), 0);
-        for (i = 0; i < (k ? 6 : 4); i++) CHECK_TRUE(file[i], same_file("whole", "parts", file[i]));
+        for (i = 0; i < (k ? 9 : 7); i++) CHECK_TRUE(file[i], same_file("whole", "parts", file[i]));
         CHECK_TRUE("... after which the checkpoint goes", !exists("build/tests/parts/checkpoint.bin"));
     }
     CHECK_TRUE("... of a bond", number_in("build/tests/parts/summary.json", "bonded_area_um2") > 0);

@@ -70,8 +70,8 @@ static void interrupted(const char *method, const char *normal, int touch)
 {
     static const char *const file[] = {"particles.csv", "pairs.csv", "summary.json", "particles.pvd",
                                        "points_0000.vtu", "points_0001.vtu", "points_0002.vtu", "frame_0002.png",
-                                       "surface.pvd", "surface_0002.vtu"};
-    const int surface = !strcmp(method, "surface"), files = surface ? 10 : 8;
+                                       "history.csv", "history.png", "film.png", "surface.pvd", "surface_0002.vtu"};
+    const int surface = !strcmp(method, "surface"), files = surface ? 13 : 11;
     const long some = surface ? 50 : 100; /* of five times as many steps */
     static particles_case whole, parts;
     int k;

@@ -356,7 +356,8 @@ static inline int particles_frame(const impact *s, particles_case *q)
     output_window(&picture, 1.05 * edge, -1.05 * q->base.substrate_height, 1.05 * top);
     picture.cut[1].title = "bodies";
     particles_title(q, picture.title, sizeof picture.title);
-    ok = output_outline(&q->out, &picture, &s->world, &s->surfaces) && output_surfaces(&q->out, &s->world, &s->surfaces) &&
+    ok = output_outline(&q->out, &picture, &s->world, &s->surfaces) &&
+         output_surfaces(&q->out, &s->world, &s->surfaces) &&
          output_frame(&q->out, &s->world, &field, 1, &picture);
     output_picture_free(&picture);
     free(partner);

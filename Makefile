@@ -246,6 +246,11 @@ build/tests/live_digits: tests/web/live_digits.c build/mpm.o
 	@mkdir -p build/tests
 	$(CC) $(STRICT) $(COMPILED) $(INCLUDE) $(NOTE) $< build/mpm.o -o $@ $(LDFLAGS) -lm
 
+keys: ## docs/keys.md: what the files of the programs hold, with units
+	@mkdir -p build
+	$(CC) $(STRICT) $(INCLUDE) docs/keys.c -o build/keys $(LDFLAGS) -lm
+	build/keys >docs/keys.md.part && mv docs/keys.md.part docs/keys.md
+
 footprint: ## what each header costs - code, stack, memory, compile time: the table in README.md (5 minutes)
 	sh bench/footprint.sh "$(CC)"
 
@@ -275,4 +280,4 @@ dist: build/mpm_all.h ## a release: build/mpm-VERSION.tar.gz, and build/mpm_all.
 clean: ## removes build/
 	rm -rf build
 
-.PHONY: all help run web live-test predict test embedded fuzz hard coverage verify impacts reproduction spray-study bench bench-against footprint figures install uninstall dist clean
+.PHONY: all help run web live-test predict test embedded fuzz hard coverage verify impacts reproduction spray-study bench bench-against footprint figures keys install uninstall dist clean

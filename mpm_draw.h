@@ -715,7 +715,7 @@ static inline const char *mpm__draw_stroke(mpm_draw_canvas *c, const mpm__draw_p
             a[k] = from[k];
         }
         for (i = 1; i <= PIECES; i++) {
-            double t = (double)i / PIECES, r = 1 - t;
+            double t = (double)i / (double)PIECES, r = 1 - t;
             for (k = 0; k < 2; k++) b[k] = r * r * from[k] + 2 * r * t * bend[k] + t * t * to[k];
             mpm__draw_pen_segment(c, pen, a, b);
             for (k = 0; k < 2; k++) a[k] = b[k];

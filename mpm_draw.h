@@ -1805,7 +1805,8 @@ static inline int mpm__draw_has_image(const mpm_draw_solid_desc *d, int image)
     return (image & ~mirrors) == 0;
 }
 
-/* What has been painted, at twice the resolution: nearness, value, brightness and body (from 1; 0: none). */
+/* What has been painted, at twice the resolution: nearness, value, brightness and the body's colour (from 1; 0:
+   nothing). */
 typedef struct mpm__draw_scene {
     int width, height;
     float *depth, *value, *shade;
@@ -1959,7 +1960,7 @@ static inline void mpm__draw_balls(mpm__draw_scene *s, const mpm_draw_solid_desc
         if (!(seen.at[0] - seen.at[0] == 0 && seen.at[1] - seen.at[1] == 0)) continue;
         mpm__draw_ball(s, scale * (seen.at[0] - a->low[0]), scale * (a->high[1] - seen.at[1]), seen.at[2],
                        scale * size / 2, 1 / scale, d->value ? d->scale * (double)d->value[i] : 0,
-                       1 + (d->body ? d->body[i] : of));
+                       1 + ((d->body ? d->body[i] : of) & 7));
     }
 }
 
@@ -1984,7 +1985,7 @@ static inline void mpm__draw_faces(mpm__draw_scene *s, const mpm_draw_solid_desc
             t[k].at[0] = scale * (t[k].at[0] - a->low[0]);
             t[k].at[1] = scale * (a->high[1] - t[k].at[1]);
         }
-        mpm__draw_triangle(s, t, value, 1 + (d->body ? d->body[d->triangle[i][0]] : 0));
+        mpm__draw_triangle(s, t, value, 1 + ((d->body ? d->body[d->triangle[i][0]] : 0) & 7));
     }
 }
 

@@ -2243,13 +2243,14 @@ static inline int mpm__io_film_rows(mpm_io_film *f, FILE *in, size_t n)
 static inline int mpm__io_film_copy(mpm_io_film *f, FILE *in)
 {
     unsigned char head[8];
+    int rows = 0;
     while (fread(head, 1, 8, in) == 8) {
         const uint32_t n = mpm__io_from_big_endian(head);
-        if (!memcmp(head + 4, "IEND", 4)) return n == 0;
+        if (!memcmp(head + 4, "IEND", 4)) return n == 0 && rows;
         if (n > 0x7fffffffu - 4) return 0;
         if (memcmp(head + 4, "IDAT", 4)) {
             if (fseek(in, (long)n + 4, SEEK_CUR) != 0) return 0;
-        } else if (!mpm__io_film_rows(f, in, n)) {
+        } else if (!(rows = mpm__io_film_rows(f, in, n))) {
             return 0;
         }
     }

@@ -1289,6 +1289,9 @@ static void test_film_refused(void)
     if (file) write_file(FOLDER "/other.png", file, n / 2);
     film_refused("half a picture", FOLDER "/other.png", 0, MPM_ERR_FILE, "damaged");
     free(file);
+    write_file(FOLDER "/other.png", "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\0\x14\0\0\0\2\x8\2\0\0\0"
+               "\0\0\0\0\0\0\0\0IEND\0\0\0\0", 45);
+    film_refused("a picture without rows", FOLDER "/other.png", 0, MPM_ERR_FILE, "damaged");
     CHECK_EQUAL("a film without pictures", mpm_io_film_begin(&f, FOLDER "/empty.png", 1, NULL, &fault), MPM_OK);
     CHECK_EQUAL("... is none", mpm_io_film_end(&f, &fault), MPM_ERR_ARGUMENT);
     CHECK_TRUE("... there is no file", !exists(FOLDER "/empty.png"));

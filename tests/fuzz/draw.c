@@ -1,4 +1,4 @@
-/* Pictures: every description of a cut, a scatter and a plot, ticks and numbers, into a small canvas.
+/* Pictures: every description of a cut, a solid, a scatter and a plot, ticks and numbers, into a small canvas.
    SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "fuzz.h"
@@ -38,6 +38,33 @@ static void primitives(fuzz *f, mpm_draw_canvas *c)
     mpm_draw_series_color(fuzz_int(f, 3));
 }
 
+/* Balls or triangles. */
+static void solid(fuzz *f, mpm_draw_canvas *c, mpm_draw_rect where, mpm_real (*x)[N], const int32_t *body,
+                  const char *title)
+{
+    static int32_t corner[4][3] = {{0, 1, 2}, {2, 3, 4}, {5, 6, 7}, {8, 9, 11}};
+    mpm_draw_solid_desc d = mpm_draw_solid_desc_default();
+    int k;
+    d.count = N;
+    for (k = 0; k < 3; k++) d.x[k] = fuzz_byte(f) < 240 ? x[k] : NULL;
+    for (k = 0; k < 3; k++) d.mirror[k] = (int)fuzz_byte(f) & 1;
+    for (k = 0; k < 6; k++) d.box[k] = fuzz_double(f, d.box[k]);
+    d.value = fuzz_byte(f) < 128 ? x[3] : NULL;
+    d.body = fuzz_byte(f) < 128 ? body : NULL;
+    d.size = fuzz_double(f, 1);
+    d.turn = fuzz_double(f, d.turn);
+    d.lift = fuzz_double(f, d.lift);
+    corner[3][2] = fuzz_int(f, 11);
+    d.triangles = fuzz_byte(f) < 128 ? 4 : 0;
+    d.triangle = (const int32_t(*)[3])corner;
+    FUZZ_CHOICE(f, d.map);
+    d.scale = fuzz_double(f, 1);
+    d.low = fuzz_double(f, 0);
+    d.high = fuzz_double(f, 0);
+    d.label = d.title = d.length_unit = title;
+    mpm_draw_solid(c, where, &d, NULL);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     fuzz f = {data, size};
@@ -63,7 +90,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     ticks(&f);
     if (mpm_draw_canvas_init(&c, 160, 120, NULL, 0) < 0) return 0;
     where = mpm_draw_tile(&c, columns, rows, number);
-    switch (fuzz_byte(&f) % 4) {
+    switch (fuzz_byte(&f) % 5) {
     case 0:
         for (k = 0; k < 3; k++) cut.x[k] = fuzz_byte(&f) < 240 ? x[k] : NULL;
         cut.count = N;
@@ -117,6 +144,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         plot.y_label = title;
         mpm_draw_plot(&c, where, &plot, NULL);
         break;
+    case 3: solid(&f, &c, where, x, body, title); break;
     default: primitives(&f, &c); break;
     }
     mpm_draw_canvas_free(&c);

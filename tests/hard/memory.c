@@ -1,5 +1,5 @@
 /* memory - every allocation fails in turn: setting up, bodies, clouds, rules, user fields, growth during steps, a
-   picture, its file, surfaces of two and three dimensions, a spray. A failure is a status, what was there goes on,
+   picture, its file, a film, surfaces of two and three dimensions, a spray. A failure is a status, what was there goes on,
    nothing is lost. One line at the end. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,6 +33,32 @@ static void want(int ok, const char *what)
         want(first == MPM_ERR_MEMORY, #call); \
         want((call) >= 0, "again: " #call); \
     } } while (0)
+
+/* A film of a canvas, twice. */
+static mpm_status film(const mpm_draw_canvas *c, mpm_fault *fault)
+{
+    mpm_io_film f;
+    mpm_io_film_begin(&f, "build/hard/film.png", 1, NULL, fault);
+    mpm_io_film_add(&f, c->rgb, c->width, c->height, fault);
+    mpm_io_film_add(&f, c->rgb, c->width, c->height, fault);
+    return mpm_io_film_end(&f, fault);
+}
+
+/* Balls, and triangles between the places. */
+static void solids(const mpm_world *w)
+{
+    static const int32_t corner[1][3] = {{0, 40, 90}};
+    mpm_draw_solid_desc d = mpm_draw_solid_of(w, w->points.temperature);
+    mpm_draw_canvas c;
+    mpm_fault fault;
+    TRY(mpm_draw_canvas_init(&c, 60, 40, NULL, 0));
+    TRY(mpm_draw_solid(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &fault));
+    d.triangles = 1;
+    d.triangle = corner;
+    TRY(mpm_draw_solid(&c, mpm_draw_tile(&c, 1, 1, 0), &d, &fault));
+    TRY(film(&c, &fault));
+    mpm_draw_canvas_free(&c);
+}
 
 static void world(void)
 {
@@ -75,6 +101,7 @@ static void world(void)
     TRY(mpm_draw_cuts(&c, &cut, 1, 1, 120, &fault));
     TRY(mpm_io_png("build/hard/memory.png", c.rgb, c.width, c.height, "memory", &fault));
     mpm_draw_canvas_free(&c);
+    solids(&w);
     mpm_free(&w);
 }
 

@@ -1217,6 +1217,7 @@ static void test_film(void)
     film_said said;
     unsigned char *rgb;
     int k, x, y;
+    remove(path);
     CHECK_EQUAL("a film", mpm_io_film_begin(&f, path, 0.25, "a film", &fault), MPM_OK);
     for (k = 0; k < FILM_PICTURES; k++) {
         film_picture(pixels[k], k);

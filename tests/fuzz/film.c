@@ -1,5 +1,6 @@
-/* A picture file with bytes changed anywhere, its chunks' sums made right again or not, goes into a film: it is refused,
-   or the film is whole: chunk after chunk with its sum, and as many pictures as it says. SPDX-License-Identifier: MIT */
+/* A picture file with bytes changed anywhere, its chunks' sums made right again or not, goes into a film: it is
+   refused, or the film is whole: chunk after chunk with its sum, and as many pictures as it says.
+   SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "fuzz.h"
 #include "mpm_io.h"

@@ -1,6 +1,6 @@
 /* memory - every allocation fails in turn: setting up, bodies, clouds, rules, user fields, growth during steps, a
-   picture, its file, a film, surfaces of two and three dimensions, a spray. A failure is a status, what was there goes on,
-   nothing is lost. One line at the end. SPDX-License-Identifier: MIT */
+   picture, its file, a solid, a film, surfaces of two and three dimensions, a spray. A failure is a status, what was
+   there goes on, nothing is lost. One line at the end. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -13,11 +13,13 @@
    531 MPa at 10, 20, 40 m/s, cell 1.5 um), as the metal's strength does. Source A names bond strength as an
    aim (chapter 4) and prints no number.
 
-   The loop in draw() is the method with a grip in it. SPDX-License-Identifier: MIT */
+   The loop in draw() is the method with a grip in it. Ctrl-C and SIGTERM end impact or pull with a checkpoint, from
+   which --resume goes on to the same bytes. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "impact_history.h"
 #include "impact_options.h"
 #include "output.h"
+#include "restart.h"
 
 /* What to do after the impact. */
 typedef struct pull_case {
@@ -27,11 +29,36 @@ typedef struct pull_case {
     int quiet;
 } pull_case;
 
-/* Samples of the pull, for the table and the curve. */
+/* A row of the table per sample: its columns. */
+enum { TIME, WAY, FORCE, GRIP_FORCE, STRESS, NODES_MET, NODES_BONDED, NODES_HELD, COLUMNS };
+
 typedef struct curve {
-    mpm_real *separation, *stress; /* um, MPa */
-    size_t count, room;
+    double (*row)[COLUMNS];
+    mpm_real *separation, *stress; /* um, MPa: two of the columns, to be drawn */
+    size_t room;
 } curve;
+
+/* How far it is; with the world and the rows of the curve all that the next step asks for. */
+typedef struct pull_state {
+    int drawing;           /* 0: the impact; 1: the pull */
+    int64_t rows;
+    double gripped;        /* momentum that the grip gave the particle since the last row of the history */
+    mpm_interface met;     /* at the end of the impact */
+    impact_result struck;
+    mpm_pull pull;
+} pull_state;
+
+/* Everything of a run. */
+typedef struct job {
+    const impact_case *impact_case;
+    const pull_case *o;
+    impact *s;
+    curve c;
+    history past;
+    pull_state at;
+    output out;
+    restart again;
+} job;
 
 static int check(const pull_case *c, char *m, size_t n)
 {
@@ -95,51 +122,59 @@ static mpm_status hold(impact *s, mpm_pull *p)
     return MPM_OK;
 }
 
-/* Draws the bodies apart until they have parted or the way is done, a row of the table per sample. */
-static int draw(impact *s, const pull_case *o, mpm_pull *p, mpm_io_csv *table, curve *c, history *past)
+/* The sample that is complete becomes a row. Returns how many nodes, or contacts on surfaces, the bodies meet at. */
+static long take_row(job *j)
 {
+    const mpm_pull *p = &j->at.pull;
+    const int whole = impact_copies(j->s);
+    const mpm_interface met = meet(j->s);
+    double *row = j->c.row[j->at.rows++];
+    row[TIME] = p->time * 1e3;
+    row[WAY] = p->separation;
+    row[FORCE] = p->force * whole;
+    row[GRIP_FORCE] = p->grip_force * whole;
+    row[STRESS] = p->force / p->desc.area;
+    row[NODES_MET] = (double)met.nodes;
+    row[NODES_BONDED] = (double)met.bonded;
+    row[NODES_HELD] = (double)met.held;
+    return met.nodes;
+}
+
+/* A row of the history, when it is due. */
+static void remember_pull(job *j)
+{
+    if (!history_due(&j->past, j->s->world.steps, INT64_MAX)) return;
+    impact_history_sample(&j->past, j->s);
+    impact_history_push(&j->past, j->s, j->at.gripped);
+    j->at.gripped = 0;
+}
+
+/* Draws the bodies apart until they have parted or the way is done. Returns as strike(). */
+static int draw(job *j)
+{
+    impact *s = j->s;
     mpm_world *w = &s->world;
-    const int whole = impact_copies(s);
-    double gripped = 0; /* momentum that the grip gave the particle since the last row of the history */
-    mpm_interface met;
-    progress line;
-    progress_begin(&line, o->quiet);
-    do {
-        progress_part(&line, "pull, if they do not part before:", p->separation / o->distance);
-        if (history_due(past, w->steps, INT64_MAX)) {
-            impact_history_sample(past, s);
-            impact_history_push(past, s, gripped);
-            gripped = 0;
-        }
+    mpm_pull *p = &j->at.pull;
+    int status = 1;
+    while (p->separation < j->o->distance && (size_t)j->at.rows < j->c.room) {
+        if ((status = restart_goes_on(&j->again)) <= 0) break;
+        progress_part(&j->out.line, "pull, if they do not part before:", p->separation / j->o->distance);
+        remember_pull(j);
         if (mpm_locate(w, s->dt) < 0) return report(&w->fault, "locate");
         mpm_calm(w);
         mpm_p2g(w);
         mpm_forces(w);
         if (hold(s, p) < 0) return report(&w->fault, "contact");
-        if (mpm_pull_apply(p, w)) { /* the grips give their nodes their velocity */
-            met = meet(s);
-            c->separation[c->count] = (mpm_real)p->separation;
-            c->stress[c->count++] = (mpm_real)(p->force / p->desc.area);
-            mpm_io_csv_real(table, (mpm_real)(p->time * 1e3));
-            mpm_io_csv_real(table, (mpm_real)p->separation);
-            mpm_io_csv_real(table, (mpm_real)(p->force * whole));
-            mpm_io_csv_real(table, (mpm_real)(p->grip_force * whole));
-            mpm_io_csv_real(table, (mpm_real)(p->force / p->desc.area));
-            mpm_io_csv_integer(table, met.nodes);
-            mpm_io_csv_integer(table, met.bonded);
-            mpm_io_csv_integer(table, met.held);
-            if (met.nodes == 0) break;
-        }
-        gripped += p->grip[0].impulse[2];
+        if (mpm_pull_apply(p, w) && take_row(j) == 0) break; /* the grips give their nodes their velocity */
+        j->at.gripped += p->grip[0].impulse[2];
         mpm_g2p(w);
         mpm_musl(w);
         if (mpm_stress(w) < 0) return report(&w->fault, "stress");
         if (s->surfaces.surfaces > 0 && mpm_surface_move(&s->surfaces, w) < 0)
             return report(&s->surfaces.fault, "surfaces");
         mpm_move(w);
-    } while (p->separation < o->distance && c->count < c->room);
-    progress_end(&line);
-    return 1;
+    }
+    return status;
 }
 
 /* The section at the end of the pull: room for the particle as it was, whatever its shape, and for its way. */
@@ -155,7 +190,7 @@ static void describe_picture(const impact *s, const impact_case *c, const pull_c
 }
 
 /* That section beside the curve of the pull. */
-static int write_picture(const impact *s, const impact_case *c, const pull_case *o, const mpm_pull *p, const curve *k)
+static int write_picture(job *j)
 {
     mpm_draw_plot_desc plot = mpm_draw_plot_desc_default();
     mpm_draw_curve line;
@@ -163,12 +198,17 @@ static int write_picture(const impact *s, const impact_case *c, const pull_case 
     output_picture section;
     mpm_fault fault;
     char path[PATH_BYTES];
+    int64_t i;
     int ok;
-    describe_picture(s, c, o, p, &section);
+    describe_picture(j->s, j->impact_case, j->o, &j->at.pull, &section);
+    for (i = 0; i < j->at.rows; i++) {
+        j->c.separation[i] = (mpm_real)j->c.row[i][WAY];
+        j->c.stress[i] = (mpm_real)j->c.row[i][STRESS];
+    }
     line.name = NULL;
-    line.count = k->count;
-    line.x = k->separation;
-    line.y = k->stress;
+    line.count = (size_t)j->at.rows;
+    line.x = j->c.separation;
+    line.y = j->c.stress;
     line.mark = MPM_DRAW_CURVE;
     line.color = 0;
     plot.curves = &line;
@@ -177,12 +217,31 @@ static int write_picture(const impact *s, const impact_case *c, const pull_case 
     plot.x_label = "way of the grip (um)";
     plot.y_label = "stress (MPa)";
     if (mpm_draw_canvas_init(&canvas, 1500, 700, NULL, 0) != MPM_OK) return complain("no memory for the picture");
-    file_in(o->folder, "pull.png", path, sizeof path);
+    file_in(j->o->folder, "pull.png", path, sizeof path);
     ok = mpm_draw_cut(&canvas, mpm_draw_tile(&canvas, 2, 1, 0), &section.cut[0], &fault) >= 0 &&
-         (k->count < 2 || mpm_draw_plot(&canvas, mpm_draw_tile(&canvas, 2, 1, 1), &plot, &fault) >= 0) &&
+         (j->at.rows < 2 || mpm_draw_plot(&canvas, mpm_draw_tile(&canvas, 2, 1, 1), &plot, &fault) >= 0) &&
          mpm_io_png(path, canvas.rgb, canvas.width, canvas.height, "mpm.h examples/pull", &fault) >= 0;
     mpm_draw_canvas_free(&canvas);
     return ok || report(&fault, path);
+}
+
+static int write_table(const job *j)
+{
+    mpm_io_csv table;
+    mpm_fault fault;
+    char path[PATH_BYTES];
+    int64_t i;
+    int k;
+    if (mpm_io_csv_begin(&table, file_in(j->o->folder, "pull.csv", path, sizeof path),
+                         "time_ns,way_um,force_uN,grip_force_uN,stress_MPa,nodes_met,nodes_bonded,nodes_held",
+                         "pull: forces of the whole particle", &fault) < 0)
+        return report(&fault, path);
+    for (i = 0; i < j->at.rows; i++)
+        for (k = 0; k < COLUMNS; k++) {
+            if (k < NODES_MET) mpm_io_csv_real(&table, (mpm_real)j->c.row[i][k]);
+            else mpm_io_csv_integer(&table, (long long)j->c.row[i][k]);
+        }
+    return mpm_io_csv_end(&table, &fault) >= 0 || report(&fault, path);
 }
 
 static int write_summary(const impact *s, const pull_case *o, const impact_result *r, const mpm_interface *met,
@@ -215,81 +274,133 @@ static int write_summary(const impact *s, const pull_case *o, const impact_resul
     return mpm_io_json_end(&j, &fault) >= 0 || report(&fault, path);
 }
 
-/* The history of both, which ends when the grip's way is done; or before, when the bodies part. */
-static void remember(history *past, const impact *s, const pull_case *o)
+/* Steps of both; fewer when the bodies part before the grip's way is done. */
+static int64_t planned(const impact *s, const pull_case *o)
 {
     const double ns = o->ramp + o->distance / o->velocity * 1e3;
-    impact_history_begin(past, s->steps + (int64_t)(ns * 1e-3 / (double)s->dt));
+    return s->steps + (int64_t)(ns * 1e-3 / (double)s->dt);
 }
 
-/* The impact. Returns 1, or 0 after a message. */
-static int strike(impact *s, const pull_case *o, history *past)
+/* The impact. Returns 1; 0 after a message; -1 when stopped before its end, with a checkpoint. */
+static int strike(job *j)
 {
-    progress line;
-    progress_begin(&line, o->quiet);
+    impact *s = j->s;
+    int status;
     while (s->world.steps < s->steps) {
-        if (history_due(past, s->world.steps, INT64_MAX)) impact_history_sample(past, s);
+        if ((status = restart_goes_on(&j->again)) <= 0) return status;
+        if (history_due(&j->past, s->world.steps, INT64_MAX)) impact_history_sample(&j->past, s);
         if (impact_step(s) < 0) return report(&s->world.fault, "impact");
-        progress_part(&line, "impact", (double)s->world.steps / (double)s->steps);
+        progress_part(&j->out.line, "impact", (double)s->world.steps / (double)s->steps);
     }
-    progress_end(&line);
     return 1;
 }
 
-/* Impact and pull. The world is that of s; c gets room for the samples. */
-static int run(impact *s, const impact_case *ic, const pull_case *o, curve *c, const option *options, int n)
+/* From the impact to the pull. */
+static int grip(job *j)
 {
-    mpm_interface met;
-    impact_result r;
-    mpm_io_csv table;
     mpm_fault fault;
-    mpm_pull p;
-    history past;
-    char path[PATH_BYTES], grip[80];
-    int drawn;
-    remember(&past, s, o);
-    if (!strike(s, o, &past)) return 0;
-    r = impact_measure(s, ic);
-    met = meet(s);
-    memset(&p, 0, sizeof p);
-    snprintf(grip, sizeof grip, "--grip %g, which leaves nothing to draw at", o->grip);
-    if (met.area > 0 && describe(&p, s, ic, o, &met, &fault) != MPM_OK) return report(&fault, grip);
-    if (mpm_io_csv_begin(&table, file_in(o->folder, "pull.csv", path, sizeof path),
-                         "time_ns,way_um,force_uN,grip_force_uN,stress_MPa,nodes_met,nodes_bonded,nodes_held",
-                         "pull: forces of the whole particle", &fault) < 0)
-        return report(&fault, path);
-    drawn = met.area > 0 ? draw(s, o, &p, &table, c, &past) : 1; /* without contact the particle has left: strength 0 */
-    if (mpm_io_csv_end(&table, &fault) < 0) return report(&fault, path);
-    if (!drawn) return 0;
-    if (!write_summary(s, o, &r, &met, &p, options, n) || !write_picture(s, ic, o, &p, c)) return 0;
-    if (!history_csv(&past, o->folder) || !impact_history_png(&past, o->folder, "impact and pull")) return 0;
-    if (!o->quiet)
-        printf("strength %.4g MPa: %.4g uN over %.4g um2 of contact (%.4g um2 at bonded nodes)\n"
-               "PBCP %.3g %%, work %.4g pJ over %.3g um; see %s/summary.json, pull.csv, pull.png, history.csv\n",
-               p.peak_stress, p.peak_force * impact_copies(s), met.area * impact_copies(s),
-               met.bonded_area * impact_copies(s), r.bond.pbcp, p.work * impact_copies(s), p.separation, o->folder);
+    char name[80];
+    j->at.struck = impact_measure(j->s, j->impact_case);
+    j->at.met = meet(j->s);
+    j->at.drawing = 1;
+    snprintf(name, sizeof name, "--grip %g, which leaves nothing to draw at", j->o->grip);
+    if (!(j->at.met.area > 0)) return 1; /* without contact the particle has left: strength 0 */
+    return describe(&j->at.pull, j->s, j->impact_case, j->o, &j->at.met, &fault) == MPM_OK || report(&fault, name);
+}
+
+/* Impact and pull, or what is left of them. Returns as strike(). */
+static int run(job *j)
+{
+    int status = 1;
+    output_start(&j->out, &j->s->world);
+    if (!j->at.drawing) {
+        status = strike(j);
+        progress_end(&j->out.line);
+        if (status <= 0) return status;
+        if (!grip(j)) return 0;
+        progress_begin(&j->out.line, j->o->quiet);
+    }
+    if (j->at.met.area > 0) status = draw(j);
+    progress_end(&j->out.line);
+    return status;
+}
+
+/* Everything that is written at the end, or where the run is stopped. */
+static int finish(job *j, const option *options, int n)
+{
+    const mpm_pull *p = &j->at.pull;
+    const int whole = impact_copies(j->s);
+    if (!j->at.drawing) j->at.struck = impact_measure(j->s, j->impact_case);
+    if (!write_table(j) || !write_summary(j->s, j->o, &j->at.struck, &j->at.met, p, options, n) || !write_picture(j) ||
+        !history_csv(&j->past, j->o->folder) || !impact_history_png(&j->past, j->o->folder, "impact and pull"))
+        return 0;
+    if (j->o->quiet || !j->at.drawing) return 1;
+    printf("strength %.4g MPa: %.4g uN over %.4g um2 of contact (%.4g um2 at bonded nodes)\n"
+           "PBCP %.3g %%, work %.4g pJ over %.3g um; see %s/summary.json, pull.csv, pull.png, history.csv\n",
+           p->peak_stress, p->peak_force * whole, j->at.met.area * whole, j->at.met.bonded_area * whole,
+           j->at.struck.bond.pbcp, p->work * whole, p->separation, j->o->folder);
     return 1;
+}
+
+/* Room for the samples. */
+static int begin_curve(curve *c, const pull_case *o)
+{
+    c->room = (size_t)(o->distance / o->velocity * 1e3 / o->sample + o->ramp / o->sample) + 2;
+    c->row = (double (*)[COLUMNS])calloc(c->room, sizeof *c->row);
+    c->separation = (mpm_real *)malloc(c->room * sizeof *c->separation);
+    c->stress = (mpm_real *)malloc(c->room * sizeof *c->stress);
+    return (c->row && c->separation && c->stress) || complain("no memory");
+}
+
+/* What a checkpoint holds; of_case options make the run. */
+static void describe_restart(job *j, const option *options, int of_case)
+{
+    restart_describe(&j->again, &j->s->world, &j->s->surfaces, &j->out, &j->s->start, &j->past, j->s->dt, options,
+                     of_case);
+    restart_also(&j->again, "pull", &j->at, sizeof j->at);
+    restart_also(&j->again, "samples", j->c.row, j->c.room * sizeof *j->c.row);
+}
+
+/* A checkpoint is of this run, but is what stands in it possible? */
+static int goes_on(const job *j)
+{
+    const int64_t rows = j->at.rows;
+    return (rows >= 0 && (size_t)rows <= j->c.room) ||
+           complain("checkpoint.bin: its samples are more than there can be");
+}
+
+/* The run that is described. Returns as strike(). */
+static int carry_on(job *j, const option *options, int of_case, int of_run)
+{
+    int status;
+    impact_history_begin(&j->past, planned(j->s, j->o));
+    describe_restart(j, options, of_case);
+    status = restart_begin(&j->again, planned(j->s, j->o)) && goes_on(j) ? run(j) : 0;
+    if (status != 0 && !finish(j, options, of_run)) status = 0;
+    if (status > 0) restart_end(&j->again);
+    return status;
 }
 
 static int carry_out(int argc, char **argv)
 {
     const int surface = !strcmp(impact_method(argc, argv, "thesis"), "surface");
+    static job j; /* it holds the history */
     impact_case c = surface ? impact_case_surface() : impact_case_default();
     pull_case o = {20, 20, 5, 4, 3, "build/pull-out", 0};
     option options[IMPACT_OPTIONS];
-    int n = impact_options(&c, options);
+    int n = impact_options(&c, options), of_case, of_run, parsed, status;
     char message[300];
-    mpm_fault fault;
-    curve k;
     impact s;
-    int parsed, ok;
     option_add(options, &n, "pull-velocity", OPTION_REAL, &o.velocity, "of the upper grip, m/s");
     option_add(options, &n, "ramp", OPTION_REAL, &o.ramp, "time to reach it, ns");
     option_add(options, &n, "sample", OPTION_REAL, &o.sample, "time over which the force is averaged, ns");
     option_add(options, &n, "distance", OPTION_REAL, &o.distance, "way of the grip, unless the bodies part before, um");
     option_add(options, &n, "grip", OPTION_REAL, &o.grip, "height of the particle's cap that is gripped, um");
+    of_case = n;
     option_add(options, &n, "out", OPTION_TEXT, &o.folder, "output folder");
     option_add(options, &n, "quiet", OPTION_FLAG, &o.quiet, "print nothing");
+    of_run = n;
+    restart_options(&j.again, options, &n);
     c.geometry = "axisymmetric";
     if (!surface) {
         c.cell = 1;
@@ -299,21 +410,22 @@ static int carry_out(int argc, char **argv)
                            options, n);
     if (parsed) return parsed < 0 ? 1 : 0;
     impact_complete(&c);
-    if (!check(&o, message, sizeof message) || !impact_begin(&s, &c, message, sizeof message)) {
-        complain(message);
-        return 1;
-    }
-    k.count = 0;
-    k.room = (size_t)(o.distance / o.velocity * 1e3 / o.sample + o.ramp / o.sample) + 2;
-    k.separation = (mpm_real *)malloc(k.room * sizeof *k.separation);
-    k.stress = (mpm_real *)malloc(k.room * sizeof *k.stress);
-    ok = (k.separation && k.stress) || complain("no memory");
-    ok = ok && (mpm_io_make_directory(o.folder, &fault) >= 0 || report(&fault, o.folder));
-    ok = ok && run(&s, &c, &o, &k, options, n);
-    free(k.separation);
-    free(k.stress);
+    if (!check(&o, message, sizeof message) || !restart_check(&j.again, message, sizeof message) ||
+        !impact_begin(&s, &c, message, sizeof message))
+        return !complain(message);
+    j.impact_case = &c;
+    j.o = &o;
+    j.s = &s;
+    j.out = output_of(o.folder, "pull", "um", "ns", 1);
+    j.out.frames = 0;
+    j.out.quiet = o.quiet;
+    status = begin_curve(&j.c, &o) ? carry_on(&j, options, of_case, of_run) : 0;
+    if (status < 0) print_again(argc, argv, "--resume", (long long)s.world.steps, (long long)planned(&s, &o));
+    free(j.c.row);
+    free(j.c.separation);
+    free(j.c.stress);
     impact_end(&s);
-    return ok ? 0 : 1;
+    return status > 0 ? 0 : status < 0 ? STOPPED : 1;
 }
 
 int main(int argc, char **argv) { return program_end(carry_out(argc, argv)); }

@@ -8,6 +8,7 @@
 #include "output.h"
 
 #define RESTART_BODIES 501 /* the most that a checkpoint holds */
+#define RESTART_MORE 4     /* stretches of memory of the program's own, at most */
 
 typedef struct restart {
     double every;           /* CPU seconds from one checkpoint to the next; 0: only when stopped */
@@ -19,6 +20,8 @@ typedef struct restart {
     output *out;
     mpm_totals *start;      /* what the run began with */
     history *past;
+    mpm_blob more[RESTART_MORE]; /* by restart_also */
+    int mores;
 } restart;
 
 static inline void restart_options(restart *r, option *o, int *n)
@@ -63,17 +66,25 @@ static inline void restart_describe(restart *r, mpm_world *w, mpm_surfaces *surf
     mpm_io_world_text(text + used, RESTART_TEXT - used, w);
 }
 
-#define RESTART_BLOBS (MPM_BLOBS(RESTART_BODIES) + MPM_SURFACES_BLOBS(RESTART_BODIES) + HISTORY_BLOBS + 3)
+#define RESTART_BLOBS \
+    (MPM_BLOBS(RESTART_BODIES) + MPM_SURFACES_BLOBS(RESTART_BODIES) + HISTORY_BLOBS + 3 + RESTART_MORE)
+
+/* What the program keeps beside the world: plain data without pointers, which stays where it is. */
+static inline void restart_also(restart *r, const char *name, void *data, size_t bytes)
+{
+    r->more[r->mores++] = mpm_blob_of(name, data, bytes);
+}
 
 /* Behind those of the world, and of the surfaces if there are any. Returns how many there are. */
 static inline int restart_blobs(restart *r, mpm_blob *blob, int *world)
 {
-    int n = *world = mpm_blobs(r->world, blob);
+    int n = *world = mpm_blobs(r->world, blob), i;
     if (r->surfaces) n += mpm_surfaces_blobs(r->surfaces, blob + n);
     n += history_blobs(r->past, blob + n);
     blob[n++] = mpm_blob_of("start", r->start, sizeof *r->start);
     blob[n++] = mpm_blob_of("frame", &r->out->frame, sizeof r->out->frame);
     blob[n++] = mpm_blob_of("cpu seconds", &r->out->cpu, sizeof r->out->cpu);
+    for (i = 0; i < r->mores; i++) blob[n++] = r->more[i];
     return n;
 }
 

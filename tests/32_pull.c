@@ -245,9 +245,51 @@ static void example(void)
     CHECK_TRUE("... is named as given", strstr(text_of("build/tests/pull.out"), "--grip 100,") != NULL);
 }
 
+/* Pull into a folder, quietly; the exit status. */
+static int pull_to(const char *folder, const char *options)
+{
+    char command[500];
+    snprintf(command, sizeof command, "build/pull --cell 1.5 --spacing 0.75 --quiet --out build/tests/%s %s "
+             ">build/tests/pull.out 2>&1", folder, options);
+    return system(command);
+}
+
+static int same_files(const char *a, const char *b)
+{
+    char command[300];
+    snprintf(command, sizeof command, "diff -r -I '\"out\"' build/tests/%s build/tests/%s >build/tests/pull.out", a, b);
+    return system(command) == 0;
+}
+
+/* Stopped in the impact and in the pull: what comes out is the same, byte by byte. */
+static void stopped(const char *method)
+{
+    char whole[200], parts[300];
+    int steps;
+    snprintf(whole, sizeof whole, "--dt-factor 0.2 --distance 0.3 --sample 2 %s", method);
+    CHECK_TRUE(method, system("rm -rf build/tests/pull_whole build/tests/pull_parts") == 0);
+    CHECK_EQUAL("... from start to end", pull_to("pull_whole", whole), 0);
+    snprintf(parts, sizeof parts, "%s --stop-after 300", whole);
+    CHECK_TRUE("stopped in the impact", pull_to("pull_parts", parts) != 0);
+    CHECK_TRUE("... says how it goes on", strstr(text_of("build/tests/pull.out"), "stopped at step 300 of ") != NULL);
+    snprintf(parts, sizeof parts, "%s --resume --distance 0.2", whole);
+    CHECK_TRUE("... not with another way of the grip", pull_to("pull_parts", parts) != 0);
+    CHECK_TRUE("... which is named", strstr(text_of("build/tests/pull.out"), "distance") != NULL);
+    steps = (int)number_in("build/tests/pull_whole/summary.json", "steps"); /* stop 100 before the end */
+    snprintf(parts, sizeof parts, "%s --resume --stop-after %d", whole, steps - 400);
+    CHECK_TRUE("stopped in the pull", pull_to("pull_parts", parts) != 0);
+    CHECK_TRUE("... which had begun", number_in("build/tests/pull_parts/summary.json", "end_way_um") > 0);
+    snprintf(parts, sizeof parts, "%s --resume", whole);
+    CHECK_EQUAL("... it goes on to its end", pull_to("pull_parts", parts), 0);
+    CHECK_TRUE("... and leaves the same files", same_files("pull_whole", "pull_parts"));
+    CHECK_TRUE("... without a checkpoint that is left to go on from", pull_to("pull_parts", parts) != 0);
+}
+
 int main(void)
 {
     example();
+    stopped("--time 40");
+    stopped("--method surface --adhesion-critical 1000 --time 40");
     elastic();
     yields();
     unbonded();

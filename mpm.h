@@ -1141,7 +1141,13 @@ enum { MPM__WIDE = 4 };
 #else
 enum { MPM__WIDE = 2 };
 #endif
+#ifdef MPM_FLOAT
+#define MPM__MASK int32_t
+#else
+#define MPM__MASK int64_t
+#endif
 typedef mpm_real mpm__wide __attribute__((vector_size(MPM__WIDE * sizeof(mpm_real))));
+typedef MPM__MASK mpm__mask __attribute__((vector_size(MPM__WIDE * sizeof(mpm_real))));
 #else
 enum { MPM__WIDE = 1 };
 typedef mpm_real mpm__wide;
@@ -1156,6 +1162,16 @@ MPM_KERNEL mpm__wide mpm__load(const mpm_real *from)
 
 MPM_KERNEL void mpm__store(mpm_real *to, mpm__wide v) { memcpy(to, &v, sizeof v); }
 
+/* v where m is more than least, else 0. */
+MPM_KERNEL mpm__wide mpm__where_more(mpm__wide m, mpm_real least, mpm__wide v)
+{
+#ifdef MPM__MASK
+    return (mpm__wide)((mpm__mask)v & (m > least));
+#else
+    return m > least ? v : 0;
+#endif
+}
+
 /* ---- shape functions and the sweep over a run ------------------------------------------------ */
 
 /* Shape functions and derivatives, per direction, of up to MPM_BLOCK points of a body. */
@@ -1166,15 +1182,22 @@ typedef struct mpm__weights {
     mpm_real dN[3][4][MPM__LANES];
 } mpm__weights;
 
+/* A place in its cell, 0 to 1. A point on a grid plane would give its far node a gradient but no mass, hence no
+   velocity: it is kept a hair's breadth inside. */
+MPM_KERNEL mpm_real mpm__within(mpm_real t)
+{
+    const mpm_real in = t > MPM__HAIR ? t : MPM__HAIR;
+    return in < 1 - MPM__HAIR ? in : 1 - MPM__HAIR;
+}
+
 /* One direction: t is the distance from the base node in cells. The linear hat, 1 - |e| at e cells from the node
-   (A 3.20). A point on a grid plane would give its far node a gradient but no mass, hence no velocity: it is kept a
-   hair's breadth inside. */
+   (A 3.20). */
 MPM_KERNEL void mpm__hats(mpm__weights *s, int axis, const mpm_real *t, mpm_real inv)
 {
     const int n = s->n;
     int p;
     for (p = 0; p < n; p++) {
-        const mpm_real in = t[p] > MPM__HAIR ? t[p] : MPM__HAIR, u = in < 1 - MPM__HAIR ? in : 1 - MPM__HAIR;
+        const mpm_real u = mpm__within(t[p]);
         s->N[axis][0][p] = 1 - u;
         s->N[axis][1][p] = u;
         s->dN[axis][0][p] = -inv;
@@ -1255,30 +1278,49 @@ MPM_KERNEL mpm_real mpm__point_size(const mpm_world *w, int32_t body)
     return w->desc.basis == MPM_QUADRATIC ? 1 : w->body[body].desc.spacing * (1 / w->desc.cell);
 }
 
-/* Distances of points [at, at + n) of run r from its base in cells, to t[d][to] and those after it. */
-MPM_KERNEL void mpm__distances(const mpm_world *w, const mpm_run *r, int32_t at, int n, mpm_real (*t)[MPM__LANES],
-                               int to)
+/* Distances of points [first, first + n), which begin in run r, from the bases of their runs in cells: t[d]. Up to
+   MPM__WIDE - 1 more are written. */
+MPM_KERNEL void mpm__distances(const mpm_world *w, const mpm_run *r, int32_t first, int n, mpm_real *const t[3])
 {
     const mpm_real inv = 1 / w->desc.cell;
-    int d, p;
-    for (d = 0; d < 3; d++) {
-        const mpm_real *x = w->points.x[d] + at, o = w->desc.origin[d];
-        const mpm_real base = (mpm_real)(r->base[d] - w->ghost);
-        for (p = 0; p < n; p += MPM__WIDE) mpm__store(&t[d][to + p], (mpm__load(x + p) - o) * inv - base);
-    }
+    int at, part, d, p;
+    MPM__EACH_PART(r, first, n, at, part)
+        for (d = 0; d < 3; d++) {
+            const mpm_real *x = w->points.x[d] + first, o = w->desc.origin[d];
+            const mpm_real base = (mpm_real)(r->base[d] - w->ghost);
+            for (p = at; p < at + part; p += MPM__WIDE) mpm__store(t[d] + p, (mpm__load(x + p) - o) * inv - base);
+        }
 }
 
 /* Weights of points [first, first + n), which begin in run r. */
-MPM_KERNEL void mpm__weigh(const mpm_world *w, const mpm_run *r, int32_t first, int n, int k, int ky,
-                           mpm__weights *s)
+MPM_KERNEL void mpm__weigh(const mpm_world *w, const mpm_run *r, int32_t first, int n, int k, int ky, mpm__weights *s)
 {
     const mpm_real inv = 1 / w->desc.cell, l = mpm__point_size(w, r->body) / 2;
-    mpm_real t[3][MPM__LANES];
-    int d, at, part;
+    mpm_real far[3][MPM__LANES], *t[3];
+    int d;
+    for (d = 0; d < 3; d++) t[d] = far[d];
     s->n = n;
     s->slope = inv;
-    MPM__EACH_PART(r, first, n, at, part) mpm__distances(w, r, first + at, part, t, at);
+    mpm__distances(w, r, first, n, t);
     for (d = 0; d < 3; d++) mpm__weights_axis(s, d, d == 1 ? ky : k, t[d], l, inv);
+}
+
+/* ... for a sweep, which of linear functions reads the weights of the upper nodes alone. */
+MPM_KERNEL void mpm__weigh_span(const mpm_world *w, const mpm_run *r, int32_t first, int n, int k, int ky,
+                                mpm__weights *s)
+{
+    mpm_real *t[3];
+    int d, p;
+    if (k != 2) {
+        mpm__weigh(w, r, first, n, k, ky, s);
+        return;
+    }
+    for (d = 0; d < 3; d++) t[d] = s->N[d][1];
+    s->n = n;
+    s->slope = 1 / w->desc.cell;
+    mpm__distances(w, r, first, n, t);
+    for (d = 0; d < 3; d++)
+        for (p = 0; p < n; p++) t[d][p] = mpm__within(t[d][p]);
 }
 
 /* The product weights of point p at all nodes of its support. */
@@ -1543,10 +1585,13 @@ MPM_KERNEL void mpm__gather(const mpm_world *w, const mpm_run *r, int k, int ky,
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     const mpm_real cutoff = w->desc.mass_cutoff * w->body[r->body].point_mass;
-    mpm_real share[MPM_SUPPORT];
+    mpm_real share[MPM_SUPPORT + 4];
     int a, d;
     for (a = 0; a < k * ky * k; a++) share[a] = w->node[slot[a]].mass;
-    for (a = 0; a < k * ky * k; a++) share[a] = share[a] > cutoff ? (per_mass ? 1 / share[a] : 1) : 0;
+    for (a = 0; a < k * ky * k; a += MPM__WIDE) {
+        const mpm__wide m = mpm__load(share + a);
+        mpm__store(share + a, mpm__where_more(m, cutoff, per_mass ? 1 / m : m * 0 + 1));
+    }
     for (a = 0; a < k * ky * k; a++) {
         const mpm_real *from = (const mpm_real *)(const void *)((const char *)&w->node[slot[a]] + mpm__offset(which));
         for (d = 0; d < 4; d += MPM__WIDE) mpm__store(V[a] + d, mpm__load(from + d) * share[a]);
@@ -1749,8 +1794,10 @@ static inline void mpm__support(const mpm_world *w, const mpm_run *run, const mp
     mpm__products(one, 0, k, ky, s->N);
     mpm__gradients(one, 0, k, ky, s->G);
     s->count = k * ky * k;
-    for (a = 0; a < s->count; a++)
-        for (s->mirror[a] = s->image[a] = 0, d = 0; d < 3; d++) {
+    memset(s->mirror, 0, sizeof s->mirror);
+    memset(s->image, 0, sizeof s->image);
+    for (a = 0; a < s->count && run->flags & 63; a++)
+        for (d = 0; d < 3; d++) {
             if (mpm__mirror(run, a, d, k, ky) < 0) s->mirror[a] = (uint8_t)(s->mirror[a] | 1 << d);
             if (mpm__turned(run, a, d, k, ky) < 0) s->image[a] = (uint8_t)(s->image[a] | 1 << d);
         }
@@ -2371,7 +2418,7 @@ MPM_KERNEL void mpm__to_nodes_body(mpm_world *w, const mpm_run *r, const mpm_run
     mpm__clear_shares(k, ky, &sums);
     MPM__EACH_SPAN(r, end, first, n) {
         const mpm_run *of = r;
-        mpm__weigh(w, r, first, n, k, ky, &s);
+        mpm__weigh_span(w, r, first, n, k, ky, &s);
         if (k != 2) mpm__along_x(&s, k, &x);
         if (what & MPM__P2G) mpm__give_momentum(&w->points, first, n, &g);
         if (what & MPM__FORCES) mpm__give_stress(&w->points, first, n, hoop, &g);
@@ -2881,16 +2928,34 @@ static inline void mpm__pairs_at(mpm_world *w, int32_t i)
         }
 }
 
+/* The lowest and the highest layer of nodes along z that has pairs. */
+static inline void mpm__pair_layers(const mpm_world *w, int32_t *low, int32_t *high)
+{
+    const int32_t layer = w->nodes_per_axis[0] * w->nodes_per_axis[1];
+    int32_t i;
+    *low = w->nodes_per_axis[2];
+    *high = -1;
+    for (i = 0; i < w->pairs; i++) {
+        const int32_t z = w->node[w->pair[i].a].index / layer;
+        *low = z < *low ? z : *low;
+        *high = z > *high ? z : *high;
+    }
+}
+
 /* Marks the runs that touch a contact node. */
 static inline void mpm__contact_runs(mpm_world *w)
 {
     const int reach = mpm__reach(w);
-    int32_t i;
+    int32_t i, low, high;
     int s;
-    for (i = 0; i < w->runs; i++)
+    mpm__pair_layers(w, &low, &high);
+    for (i = 0; i < w->runs; i++) {
+        mpm_run *r = &w->run[i];
+        const int32_t *slot = mpm__run_nodes(w, r);
+        if (!(r->flags & 63) && (r->base[2] > high || r->base[2] + w->support[2] <= low)) continue;
         for (s = 0; s < reach; s++)
-            if (w->node[w->slot[(size_t)i * (size_t)reach + (size_t)s]].flags & MPM_NODE_CONTACT)
-                w->run[i].flags |= MPM_NODE_CONTACT;
+            if (w->node[slot[s]].flags & MPM_NODE_CONTACT) r->flags |= MPM_NODE_CONTACT;
+    }
 }
 
 MPM_API void mpm_contact_find(mpm_world *w)
@@ -3254,7 +3319,7 @@ MPM_KERNEL void mpm__velocities_body(mpm_world *w, const mpm_run *r, const mpm_r
     mpm__clear_shares(k, ky, &sums);
     MPM__EACH_SPAN(r, end, first, n) {
         const mpm_run *of = r;
-        mpm__weigh(w, r, first, n, k, ky, &s);
+        mpm__weigh_span(w, r, first, n, k, ky, &s);
         if (what & MPM__G2P) {
             mpm__span_values(w, r, &s, first, k, ky, MPM__FORCE, sum);
             mpm__advance(w->points.v, first, n, w->dt, sum);
@@ -3446,11 +3511,18 @@ static inline mpm_status mpm__constitute(mpm_world *w, const mpm_body *body, int
     return s;
 }
 
+/* 0 where no node of the run has a record, told without a look at them. */
+static inline int mpm__may_touch(const mpm_world *w, const mpm_run *r)
+{
+    return w->touches > 0 && (r->flags & MPM_NODE_CONTACT || mpm__has_walls(&w->desc));
+}
+
 /* 1 if a node of the run has a record: of a contact or a wall. */
 static inline int mpm__run_touches(const mpm_world *w, const mpm_run *r)
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     int a;
+    if (!mpm__may_touch(w, r)) return 0;
     for (a = 0; a < mpm__reach(w); a++)
         if (w->node[slot[a]].touch >= 0) return 1;
     return 0;
@@ -3485,7 +3557,7 @@ MPM_KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, const mpm_run
     mpm__weights s;
     MPM__EACH_SPAN(r, end, first, n) {
         mpm_status status;
-        mpm__weigh(w, r, first, n, k, ky, &s);
+        mpm__weigh_span(w, r, first, n, k, ky, &s);
         mpm__span_gradients(w, r, &s, first, k, ky, v, g);
         mpm__strains(w->dt, n, hoop, w->points.x[0] + first, v, g, e, spin);
         if (move) mpm__span_moves(w, r, &s, first, k, ky, 0);
@@ -3524,6 +3596,7 @@ static inline int mpm__run_is_cut(const mpm_world *w, const mpm_run *r)
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     int a;
+    if (!mpm__may_touch(w, r)) return 0;
     for (a = 0; a < mpm__reach(w); a++) {
         const int32_t touch = w->node[slot[a]].touch;
         const mpm_real *cut = touch < 0 ? NULL : w->touch[touch].cut;
@@ -3571,7 +3644,7 @@ MPM_KERNEL void mpm__move_body(mpm_world *w, const mpm_run *r, const mpm_run *en
     int32_t first;
     int n;
     MPM__EACH_SPAN(r, end, first, n) {
-        mpm__weigh(w, r, first, n, k, ky, &s);
+        mpm__weigh_span(w, r, first, n, k, ky, &s);
         mpm__span_moves(w, r, &s, first, k, ky, 1);
     }
 }
@@ -3617,8 +3690,11 @@ MPM_API mpm_status mpm_stress_and_move(mpm_world *w)
 /* Forgets all slots: the table of nodes is empty again. */
 static inline void mpm__grid_reset(mpm_world *w)
 {
+    const size_t all = mpm__grid_nodes(w);
     int32_t s;
-    for (s = 0; s < w->nodes; s++) w->head[w->node[s].index] = -1;
+    if (all / 16 < (size_t)w->nodes) memset(w->head, 255, all * sizeof *w->head); /* all bits: -1 */
+    else
+        for (s = 0; s < w->nodes; s++) w->head[w->node[s].index] = -1;
     w->nodes = w->runs = w->pairs = w->pairs_possible = w->touches = 0;
 }
 
@@ -3665,36 +3741,43 @@ static inline int32_t mpm__key_at_side(mpm_world *w, int32_t i)
     return (at[2] * w->nodes_per_axis[1] + at[1]) * w->nodes_per_axis[0] + at[0];
 }
 
-/* The base node of every active point of a body, or -1 outside the grid. A point's base is the
+/* The base node of every active point of a body, or -1 outside the grid; returns 1 if any is. A point's base is the
    lowest node it touches: of its cell with linear functions, of the nearest node's lower neighbour with GIMP and
    quadratic splines, the one below its cell with cubic ones. */
-static inline void mpm__keys(mpm_world *w, const mpm_body *b)
+static inline int mpm__keys(mpm_world *w, const mpm_body *b)
 {
     const mpm_desc *d = &w->desc;
     const mpm_real *x = w->points.x[0], *y = w->points.x[1], *z = w->points.x[2];
     const mpm_real inv = 1 / d->cell, shift = w->support[0] == 3 ? MPM_R(0.5) : 0;
-    const mpm_real hx = (mpm_real)d->cells[0], hz = (mpm_real)d->cells[2];
+    const mpm_real hx = (mpm_real)d->cells[0], hy = (mpm_real)d->cells[1], hz = (mpm_real)d->cells[2];
     const mpm_real ox = d->origin[0], oy = d->origin[1], oz = d->origin[2];
     const int32_t nx = w->nodes_per_axis[0], ny = w->nodes_per_axis[1];
+    const int32_t from = b->first, to = from + b->active;
     const int flat = mpm__flat(d);
-    const mpm_real hy = (mpm_real)d->cells[1];
-    int32_t i, *key = w->key;
-    for (i = b->first; i < b->first + b->active; i++) {
-        mpm_real tx = (x[i] - ox) * inv, ty = flat ? 0 : (y[i] - oy) * inv, tz = (z[i] - oz) * inv;
-        int inside = (tx >= 0) & (tx < hx) & (ty >= 0) & (ty < hy) & (tz >= 0) & (tz < hz);
+    int32_t i, *key = w->key, away = 0, lost = 0;
+    for (i = from; i < to; i++) {
+        const mpm_real tx = (x[i] - ox) * inv, ty = flat ? 0 : (y[i] - oy) * inv, tz = (z[i] - oz) * inv;
         /* truncation of t gives the cell's lower node, of t + 1/2 the nearest node; its lower neighbour is, with
            the ghost layer counted, of the same number */
-        int32_t ix = (int32_t)(inside ? tx + shift : 0), iz = (int32_t)(inside ? tz + shift : 0);
-        int32_t iy = flat ? 0 : (int32_t)(inside ? ty + shift : 0);
-        key[i] = inside ? (iz * ny + iy) * nx + ix : mpm__key_at_side(w, i);
+        const int32_t ix = (int32_t)((tx >= 0 ? (tx < hx ? tx : -2) : -2) + shift);
+        const int32_t iy = flat ? 0 : (int32_t)((ty >= 0 ? (ty < hy ? ty : -2) : -2) + shift);
+        const int32_t iz = (int32_t)((tz >= 0 ? (tz < hz ? tz : -2) : -2) + shift);
+        const int32_t out = (ix | iy | iz) < 0 ? -1 : 0;
+        key[i] = out | ((iz * ny + iy) * nx + ix);
+        away |= out;
     }
+    for (i = from; i < to && away; i++) {
+        if (key[i] < 0) key[i] = mpm__key_at_side(w, i);
+        lost |= key[i] < 0;
+    }
+    return lost;
 }
 
 /* Takes points with key -1 out of the active range, in order. A position that is not a number is
    a failure, found before anything is moved. */
 static inline mpm_status mpm__retire(mpm_world *w, mpm_body *b)
 {
-    mpm_points *p = &w->points;
+    const mpm_points *p = &w->points;
     int32_t i;
     int a;
     for (i = b->first; i < b->first + b->active; i++)
@@ -3710,50 +3793,82 @@ static inline mpm_status mpm__retire(mpm_world *w, mpm_body *b)
     return MPM_OK;
 }
 
-/* Counting sort of a body's points by base node. The table of nodes, unused between steps, holds
-   the counts; stable, hence deterministic. */
-static inline void mpm__sort(mpm_world *w, const mpm_body *b)
+enum { MPM__SORTED = 64 }; /* points that are put in order together */
+
+/* How many of the points [i, to) that is, but none where they stay as they are: order[i] is -1 there. */
+static inline int32_t mpm__moved(const int32_t *order, int32_t *i, int32_t to)
 {
-    mpm_points *p = &w->points;
-    int32_t i, lo, hi, sum = b->first, *head = w->head, *order = w->order, *spare = (int32_t *)w->scratch;
-    const int32_t from = b->first, to = b->first + b->active;
-    int f;
-    if (from == to) return;
-    lo = hi = w->key[from];
+    while (*i < to && order[*i] < 0) *i += MPM__SORTED;
+    return *i >= to ? 0 : to - *i < MPM__SORTED ? to - *i : MPM__SORTED;
+}
+
+/* Puts entries of `size` bytes of points [from, to) in order, by way of spare. */
+MPM_KERNEL void mpm__reorder(void *array, void *spare, const int32_t *order, int32_t from, int32_t to, size_t size)
+{
+    char *a = (char *)array, *b = (char *)spare;
+    int32_t i, j, n;
+    for (i = from; (n = mpm__moved(order, &i, to)) > 0; i += n)
+        for (j = i; j < i + n; j++) memcpy(b + (size_t)j * size, a + (size_t)order[j] * size, size);
+    for (i = from; (n = mpm__moved(order, &i, to)) > 0; i += n)
+        memcpy(a + (size_t)i * size, b + (size_t)i * size, (size_t)n * size);
+}
+
+/* Notes in `order` which points [from, to) need not be put in order. */
+static inline void mpm__mark_sorted(int32_t *order, int32_t from, int32_t to)
+{
+    int32_t i, j;
+    for (i = from; i < to; i += MPM__SORTED) {
+        const int32_t end = to - i < MPM__SORTED ? to : i + MPM__SORTED;
+        int32_t moved = 0;
+        for (j = i; j < end; j++) moved |= order[j] ^ j;
+        if (!moved) order[i] = -1;
+    }
+}
+
+/* Counting sort of a body's points by base node, to w->order. The table of nodes, unused between steps, holds
+   the counts; stable, hence deterministic. */
+static inline void mpm__sorted_order(mpm_world *w, int32_t from, int32_t to)
+{
+    const int32_t *key = w->key;
+    int32_t i, lo = key[from], hi = lo, sum = from, *head = w->head, *order = w->order;
     for (i = from; i < to; i++) {
-        if (w->key[i] < lo) lo = w->key[i];
-        if (w->key[i] > hi) hi = w->key[i];
+        lo = key[i] < lo ? key[i] : lo;
+        hi = key[i] > hi ? key[i] : hi;
     }
     for (i = lo; i <= hi; i++) head[i] = 0;
-    for (i = from; i < to; i++) head[w->key[i]]++;
+    for (i = from; i < to; i++) head[key[i]]++;
     for (i = lo; i <= hi; i++) {
-        int32_t n = head[i];
+        const int32_t n = head[i];
         head[i] = sum;
         sum += n;
     }
-    for (i = from; i < to; i++) order[head[w->key[i]]++] = i;
+    for (i = from; i < to; i++) order[head[key[i]]++] = i;
     for (i = lo; i <= hi; i++) head[i] = -1;
-    for (f = 0; f < w->fields; f++) {
-        mpm_real *a = w->field + (size_t)f * w->stride;
-        for (i = from; i < to; i++) w->scratch[i] = a[order[i]];
-        memcpy(a + from, w->scratch + from, (size_t)(to - from) * sizeof *a);
-    }
-    for (i = from; i < to; i++) spare[i] = p->id[order[i]];
-    memcpy(p->id + from, spare + from, (size_t)(to - from) * sizeof *spare);
-    for (i = from; i < to; i++) spare[i] = w->key[order[i]];
-    memcpy(w->key + from, spare + from, (size_t)(to - from) * sizeof *spare);
-    for (i = from; i < to; i++) spare[i] = p->flags[order[i]];
-    for (i = from; i < to; i++) p->flags[i] = (uint8_t)spare[i];
+}
+
+static inline void mpm__sort(mpm_world *w, const mpm_body *b)
+{
+    const int32_t from = b->first, to = from + b->active;
+    int f;
+    if (from == to) return;
+    mpm__sorted_order(w, from, to);
+    mpm__mark_sorted(w->order, from, to);
+    for (f = 0; f < w->fields; f++)
+        mpm__reorder(w->field + (size_t)f * w->stride, w->scratch, w->order, from, to, sizeof *w->field);
+    mpm__reorder(w->points.id, w->scratch, w->order, from, to, sizeof *w->points.id);
+    mpm__reorder(w->key, w->scratch, w->order, from, to, sizeof *w->key);
+    mpm__reorder(w->points.flags, w->scratch, w->order, from, to, sizeof *w->points.flags);
 }
 
 /* Runs there would be with the points as they lie. */
 static inline int32_t mpm__count_runs(const mpm_world *w)
 {
+    const int32_t *key = w->key;
     int32_t b, i, n = 0;
     for (b = 0; b < w->bodies; b++) {
         const int32_t from = w->body[b].first, to = from + w->body[b].active;
         if (to > from) n++;
-        for (i = from + 1; i < to; i++) n += w->key[i] != w->key[i - 1];
+        for (i = from + 1; i < to; i++) n += key[i] != key[i - 1];
     }
     return n;
 }
@@ -3787,20 +3902,30 @@ static inline int32_t mpm__slot(mpm_world *w, int32_t body, const int32_t *at)
     return s;
 }
 
+/* 1 if run r lies one node further along x than the one before it in the list: they share all but the ends of lines. */
+static inline int mpm__follows(const mpm_world *w, const mpm_run *r)
+{
+    const mpm_run *before = r - 1;
+    return r > w->run && before->body == r->body && before->base[0] + 1 == r->base[0] &&
+           before->base[1] == r->base[1] && before->base[2] == r->base[2];
+}
+
 /* Gives a run its slots. */
 static inline int mpm__run_slots(mpm_world *w, mpm_run *r, int32_t *slot)
 {
-    const int *n = w->support;
+    const int *n = w->support, shared = mpm__follows(w, r) ? n[0] - 1 : 0, reach = mpm__reach(w);
     int32_t at[3], mirrored[3][4];
     int i[3], d;
     for (d = 0; d < 3; d++)
         for (i[0] = 0; i[0] < n[d]; i[0]++) mirrored[d][i[0]] = mpm__image_node(w, d, r->base[d] + i[0], &r->flags);
     for (i[2] = 0; i[2] < n[2]; i[2]++)
-        for (i[1] = 0; i[1] < n[1]; i[1]++)
-            for (i[0] = 0; i[0] < n[0]; i[0]++) {
+        for (i[1] = 0; i[1] < n[1]; i[1]++, slot += n[0]) {
+            for (i[0] = 0; i[0] < shared; i[0]++) slot[i[0]] = slot[i[0] + 1 - reach];
+            for (; i[0] < n[0]; i[0]++) {
                 for (d = 0; d < 3; d++) at[d] = mirrored[d][i[d]];
-                if ((*slot++ = mpm__slot(w, r->body, at)) < 0) return 0;
+                if ((slot[i[0]] = mpm__slot(w, r->body, at)) < 0) return 0;
             }
+        }
     return 1;
 }
 
@@ -3849,8 +3974,7 @@ static inline mpm_status mpm__locate(mpm_world *w)
     mpm_status s;
     mpm__grid_reset(w);
     for (b = 0; b < w->bodies; b++) {
-        mpm__keys(w, &w->body[b]);
-        if ((s = mpm__retire(w, &w->body[b])) != MPM_OK) return s;
+        if (mpm__keys(w, &w->body[b]) && (s = mpm__retire(w, &w->body[b])) != MPM_OK) return s;
     }
     mpm__keep_order(w);
     while (mpm__list_runs(w) != MPM_OK) {

@@ -54,6 +54,7 @@
                                   material treats together. 8 is right for small machines: the same bits, a
                                   tenth slower, frames of 4 KiB (float, -Os) instead of 14.
      MPM_NO_INLINE        IMPL    the kernels are not inlined by force: slower, but quick to compile.
+     MPM_NO_WIDE          IMPL    no vector types of gcc and clang: slower, the same bits.
      MPM_FINITE_MATH      GLOBAL  compile in spite of -ffinite-math-only, which -ffast-math and -Ofast
                                   bring: values that are not numbers then go unnoticed.
 
@@ -78,8 +79,8 @@
      touch        what a slot carries besides where bodies meet, or meet a wall.
      base         the lowest node that a point touches.
      run          consecutive points of a body with the same base; they share their nodes.
-     piece, lane  up to 32 points of a run (or MPM_BLOCK), swept together; a lane is one of them.
-     block        up to MPM_BLOCK points of a body handed to its material.
+     span, part   up to MPM_BLOCK points of a body, swept together; a part of them lies in one run.
+     block        a span handed to the body's material.
      mirror       a symmetry plane: nodes behind it are images of those before it.
      ghost        with GIMP and splines, the layer of nodes around the grid that points near its sides reach.
 
@@ -1135,7 +1136,7 @@ static inline size_t mpm__grid_nodes(const mpm_world *w)
 
 /* As many numbers as the compiler is told that the machine does at once, at most 4; one where it is told none. The
    operators are those of a single number, and so are the bits. */
-#if (defined(__GNUC__) || defined(__clang__)) && !defined(MPM_NO_WIDE)
+#if (defined(__SSE2__) || defined(__ARM_NEON) || defined(__VSX__)) && !defined(MPM_NO_WIDE) && !defined(_MSC_VER)
 #if defined(MPM_FLOAT) || defined(__AVX__)
 enum { MPM__WIDE = 4 };
 #else

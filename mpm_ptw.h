@@ -226,7 +226,7 @@ MPM_KERNEL mpm_real mpm_lane_log(mpm_real x)
     const mpm__bits b = mpm__bits_of(x < MPM__LEAST_NORMAL ? MPM__LEAST_NORMAL : x);
     const mpm__bits biased = (b - MPM__ROOT_HALF + one) >> MPM__MANTISSA; /* n + BIAS */
     const mpm_real ones = mpm__real_of((mpm__bits)(MPM__MANTISSA + MPM__BIAS) << MPM__MANTISSA); /* 2^MANTISSA */
-    const mpm_real n = mpm__real_of(mpm__bits_of(ones) | biased) - ones - MPM__BIAS;
+    const mpm_real n = mpm__real_of(mpm__bits_of(ones) | biased) - ones - (mpm_real)MPM__BIAS;
     const mpm_real f = mpm__real_of(b - (biased << MPM__MANTISSA) + one) - 1;
     const mpm_real s = f / (2 + f), q = s * s, t = q * q, half = f * f / 2;
 #ifdef MPM_FLOAT

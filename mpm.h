@@ -54,6 +54,7 @@
                                   material treats together. 8 is right for small machines: the same bits, a
                                   tenth slower, frames of 4 KiB (float, -Os) instead of 14.
      MPM_NO_INLINE        IMPL    the kernels are not inlined by force: slower, but quick to compile.
+     MPM_NO_WIDE          IMPL    no vector types of gcc and clang: slower, the same bits.
      MPM_FINITE_MATH      GLOBAL  compile in spite of -ffinite-math-only, which -ffast-math and -Ofast
                                   bring: values that are not numbers then go unnoticed.
 
@@ -78,8 +79,8 @@
      touch        what a slot carries besides where bodies meet, or meet a wall.
      base         the lowest node that a point touches.
      run          consecutive points of a body with the same base; they share their nodes.
-     piece, lane  up to 32 points of a run (or MPM_BLOCK), swept together; a lane is one of them.
-     block        up to MPM_BLOCK points of a body handed to its material.
+     span, part   up to MPM_BLOCK points of a body, swept together; a part of them lies in one run.
+     block        a span handed to the body's material.
      mirror       a symmetry plane: nodes behind it are images of those before it.
      ghost        with GIMP and splines, the layer of nodes around the grid that points near its sides reach.
 
@@ -1085,7 +1086,7 @@ MPM_API const char *mpm_version(void);
 #error "MPM_BLOCK is a number of points: at least 1"
 #endif
 
-#define MPM__LANES (MPM_BLOCK < 32 ? MPM_BLOCK : 32) /* points of a run treated together */
+#define MPM__LANES (MPM_BLOCK + 4) /* room for the points of a span, and for what is written beyond the last */
 #ifdef MPM_FLOAT
 #define MPM__HAIR MPM_R(1e-5) /* cells; see mpm__weights_axis */
 #else
@@ -1131,24 +1132,73 @@ static inline size_t mpm__grid_nodes(const mpm_world *w)
     return (size_t)w->nodes_per_axis[0] * (size_t)w->nodes_per_axis[1] * (size_t)w->nodes_per_axis[2];
 }
 
+/* ---- several numbers at a time ---------------------------------------------------------------- */
+
+/* As many numbers as the compiler is told that the machine does at once, at most 4; one where it is told none. The
+   operators are those of a single number, and so are the bits. */
+#if (defined(__SSE2__) || defined(__ARM_NEON) || defined(__VSX__)) && !defined(MPM_NO_WIDE) && !defined(_MSC_VER)
+#if defined(MPM_FLOAT) || defined(__AVX__)
+enum { MPM__WIDE = 4 };
+#else
+enum { MPM__WIDE = 2 };
+#endif
+#ifdef MPM_FLOAT
+#define MPM__MASK int32_t
+#else
+#define MPM__MASK int64_t
+#endif
+typedef mpm_real mpm__wide __attribute__((vector_size(MPM__WIDE * sizeof(mpm_real))));
+typedef MPM__MASK mpm__mask __attribute__((vector_size(MPM__WIDE * sizeof(mpm_real))));
+#else
+enum { MPM__WIDE = 1 };
+typedef mpm_real mpm__wide;
+#endif
+
+MPM_KERNEL mpm__wide mpm__load(const mpm_real *from)
+{
+    mpm__wide v;
+    memcpy(&v, from, sizeof v);
+    return v;
+}
+
+MPM_KERNEL void mpm__store(mpm_real *to, mpm__wide v) { memcpy(to, &v, sizeof v); }
+
+/* v where m is more than least, else 0. */
+MPM_KERNEL mpm__wide mpm__where_more(mpm__wide m, mpm_real least, mpm__wide v)
+{
+#ifdef MPM__MASK
+    return (mpm__wide)((mpm__mask)v & (m > least));
+#else
+    return m > least ? v : 0;
+#endif
+}
+
 /* ---- shape functions and the sweep over a run ------------------------------------------------ */
 
-/* Shape functions and derivatives, per direction, of up to MPM__LANES points of a run. */
+/* Shape functions and derivatives, per direction, of up to MPM_BLOCK points of a body. */
 typedef struct mpm__weights {
     int n;
+    mpm_real slope;           /* of linear functions: 1/cell */
     mpm_real N[3][4][MPM__LANES];
     mpm_real dN[3][4][MPM__LANES];
 } mpm__weights;
 
+/* A place in its cell, 0 to 1. A point on a grid plane would give its far node a gradient but no mass, hence no
+   velocity: it is kept a hair's breadth inside. */
+MPM_KERNEL mpm_real mpm__within(mpm_real t)
+{
+    const mpm_real in = t > MPM__HAIR ? t : MPM__HAIR;
+    return in < 1 - MPM__HAIR ? in : 1 - MPM__HAIR;
+}
+
 /* One direction: t is the distance from the base node in cells. The linear hat, 1 - |e| at e cells from the node
-   (A 3.20). A point on a grid plane would give its far node a gradient but no mass, hence no velocity: it is kept a
-   hair's breadth inside. */
+   (A 3.20). */
 MPM_KERNEL void mpm__hats(mpm__weights *s, int axis, const mpm_real *t, mpm_real inv)
 {
     const int n = s->n;
     int p;
     for (p = 0; p < n; p++) {
-        const mpm_real in = t[p] > MPM__HAIR ? t[p] : MPM__HAIR, u = in < 1 - MPM__HAIR ? in : 1 - MPM__HAIR;
+        const mpm_real u = mpm__within(t[p]);
         s->N[axis][0][p] = 1 - u;
         s->N[axis][1][p] = u;
         s->dN[axis][0][p] = -inv;
@@ -1204,6 +1254,17 @@ static inline void mpm__ones(mpm__weights *s, int axis)
     }
 }
 
+/* How many of the points [at, at + n) are in run r, which has the first. */
+MPM_KERNEL int mpm__part(const mpm_run *r, int32_t at, int n)
+{
+    const int32_t most = r->first + r->count - at;
+    return most < n ? (int)most : n;
+}
+
+/* Points [first, first + n) of a body run by run, the first of them in run r: [at, at + part) of them are in run r. */
+#define MPM__EACH_PART(r, first, n, at, part)                                                                   \
+    for (at = 0; at < (n) && (part = mpm__part(r, (first) + at, (n) - at)) > 0; at += part, (r)++)
+
 MPM_KERNEL void mpm__weights_axis(mpm__weights *s, int axis, int k, const mpm_real *t, mpm_real l, mpm_real inv)
 {
     if (k == 1) mpm__ones(s, axis);
@@ -1218,20 +1279,49 @@ MPM_KERNEL mpm_real mpm__point_size(const mpm_world *w, int32_t body)
     return w->desc.basis == MPM_QUADRATIC ? 1 : w->body[body].desc.spacing * (1 / w->desc.cell);
 }
 
-/* Weights of points [first, first + n) of run r. */
-MPM_KERNEL void mpm__weigh(const mpm_world *w, const mpm_run *r, int32_t first, int n, int k, int ky,
-                           mpm__weights *s)
+/* Distances of points [first, first + n), which begin in run r, from the bases of their runs in cells: t[d]. Up to
+   MPM__WIDE - 1 more are written. */
+MPM_KERNEL void mpm__distances(const mpm_world *w, const mpm_run *r, int32_t first, int n, mpm_real *const t[3])
+{
+    const mpm_real inv = 1 / w->desc.cell;
+    int at, part, d, p;
+    MPM__EACH_PART(r, first, n, at, part)
+        for (d = 0; d < 3; d++) {
+            const mpm_real *x = w->points.x[d] + first, o = w->desc.origin[d];
+            const mpm_real base = (mpm_real)(r->base[d] - w->ghost);
+            for (p = at; p < at + part; p += MPM__WIDE) mpm__store(t[d] + p, (mpm__load(x + p) - o) * inv - base);
+        }
+}
+
+/* Weights of points [first, first + n), which begin in run r. */
+MPM_KERNEL void mpm__weigh(const mpm_world *w, const mpm_run *r, int32_t first, int n, int k, int ky, mpm__weights *s)
 {
     const mpm_real inv = 1 / w->desc.cell, l = mpm__point_size(w, r->body) / 2;
-    mpm_real t[MPM__LANES];
-    int d, p;
+    mpm_real far[3][MPM__LANES], *t[3];
+    int d;
+    for (d = 0; d < 3; d++) t[d] = far[d];
     s->n = n;
-    for (d = 0; d < 3; d++) {
-        const mpm_real *x = w->points.x[d] + first, o = w->desc.origin[d];
-        const mpm_real base = (mpm_real)(r->base[d] - w->ghost);
-        for (p = 0; p < n; p++) t[p] = (x[p] - o) * inv - base;
-        mpm__weights_axis(s, d, d == 1 ? ky : k, t, l, inv);
+    s->slope = inv;
+    mpm__distances(w, r, first, n, t);
+    for (d = 0; d < 3; d++) mpm__weights_axis(s, d, d == 1 ? ky : k, t[d], l, inv);
+}
+
+/* ... for a sweep, which of linear functions reads the weights of the upper nodes alone. */
+MPM_KERNEL void mpm__weigh_span(const mpm_world *w, const mpm_run *r, int32_t first, int n, int k, int ky,
+                                mpm__weights *s)
+{
+    mpm_real *t[3];
+    int d, p;
+    if (k != 2) {
+        mpm__weigh(w, r, first, n, k, ky, s);
+        return;
     }
+    for (d = 0; d < 3; d++) t[d] = s->N[d][1];
+    s->n = n;
+    s->slope = 1 / w->desc.cell;
+    mpm__distances(w, r, first, n, t);
+    for (d = 0; d < 3; d++)
+        for (p = 0; p < n; p++) t[d][p] = mpm__within(t[d][p]);
 }
 
 /* The product weights of point p at all nodes of its support. */
@@ -1264,132 +1354,154 @@ MPM_KERNEL void mpm__gradients(const mpm__weights *s, int p, int k, int ky, mpm_
 
 /* Nodal values of linear functions turned into the coefficients of their polynomial 1, x, z, xz (in 3D 1, x, y, xy, z,
    xz, yz, xyz) in the cell: a point then costs half. Others stay as they are. */
-MPM_KERNEL void mpm__as_polynomial(int k, int ky, mpm_real V[3][MPM_SUPPORT])
+MPM_KERNEL void mpm__as_polynomial(int k, int ky, mpm_real (*V)[4])
 {
-    int d, a, stride;
+    int a, d, stride;
     if (k != 2) return;
-    for (d = 0; d < 3; d++)
-        for (stride = 1; stride < k * ky * k; stride *= 2)
-            for (a = 0; a < k * ky * k; a++)
-                if (a & stride) V[d][a] -= V[d][a - stride];
+    for (stride = 1; stride < k * ky * k; stride *= 2)
+        for (a = 0; a < k * ky * k; a++)
+            for (d = 0; d < 4 && a & stride; d += MPM__WIDE)
+                mpm__store(V[a] + d, mpm__load(V[a] + d) - mpm__load(V[a - stride] + d));
 }
 
-/* c0 + c1 x + (c2 + c3 x) z of a plane of cells, in 3D with y for z, and that of the upper face times z. */
-MPM_KERNEL mpm_real mpm__polynomial(const mpm__weights *s, int p, int ky, const mpm_real *c)
+/* c0 + c1 x + (c2 + c3 x) z of a plane of cells, in 3D with y for z, and that of the upper face times z: component d at
+   point p of the weights and those beside it. */
+MPM_KERNEL mpm__wide mpm__polynomial(const mpm__weights *s, int p, int ky, mpm_real (*c)[4], int d)
 {
-    const mpm_real x = s->N[0][1][p], z = s->N[2][1][p], y = ky > 1 ? s->N[1][1][p] : z;
-    const mpm_real low = (c[0] + x * c[1]) + y * (c[2] + x * c[3]);
-    return ky > 1 ? low + z * ((c[4] + x * c[5]) + y * (c[6] + x * c[7])) : low;
+    const mpm__wide x = mpm__load(&s->N[0][1][p]), z = mpm__load(&s->N[2][1][p]);
+    const mpm__wide y = ky > 1 ? mpm__load(&s->N[1][1][p]) : z;
+    const mpm__wide low = (c[0][d] + x * c[1][d]) + y * (c[2][d] + x * c[3][d]);
+    return ky > 1 ? low + z * ((c[4][d] + x * c[5][d]) + y * (c[6][d] + x * c[7][d])) : low;
 }
 
 /* ... and its gradient. */
-MPM_KERNEL mpm_real mpm__polynomial_gradient(const mpm__weights *s, int p, int ky, const mpm_real *c, mpm_real *g)
+MPM_KERNEL mpm__wide mpm__polynomial_gradient(const mpm__weights *s, int p, int ky, mpm_real (*c)[4], int d,
+                                              mpm__wide *g)
 {
-    const mpm_real x = s->N[0][1][p], z = s->N[2][1][p], y = ky > 1 ? s->N[1][1][p] : z, inv = s->dN[0][1][p];
-    const mpm_real c0 = c[0] + x * c[1], c2 = c[2] + x * c[3], c1 = c[1] + y * c[3], low = c0 + y * c2;
+    const mpm__wide x = mpm__load(&s->N[0][1][p]), z = mpm__load(&s->N[2][1][p]);
+    const mpm__wide y = ky > 1 ? mpm__load(&s->N[1][1][p]) : z;
+    const mpm__wide c0 = c[0][d] + x * c[1][d], c2 = c[2][d] + x * c[3][d], c1 = c[1][d] + y * c[3][d];
+    const mpm__wide low = c0 + y * c2;
     if (ky > 1) {
-        const mpm_real c6 = c[6] + x * c[7], high = (c[4] + x * c[5]) + y * c6;
-        g[0] = inv * (c1 + z * (c[5] + y * c[7]));
-        g[1] = inv * (c2 + z * c6);
-        g[2] = inv * high;
+        const mpm__wide c6 = c[6][d] + x * c[7][d], high = (c[4][d] + x * c[5][d]) + y * c6;
+        g[0] = s->slope * (c1 + z * (c[5][d] + y * c[7][d]));
+        g[1] = s->slope * (c2 + z * c6);
+        g[2] = s->slope * high;
         return low + z * high;
     }
-    g[0] = inv * c1;
-    g[1] = 0;
-    g[2] = inv * c2;
+    g[0] = s->slope * c1;
+    g[1] = c1 * 0;
+    g[2] = s->slope * c2;
     return low;
 }
 
-/* Sums over the support of V N at the points of a piece, direction by direction: with k and ky constants no loop is
-   left but that over the points. */
-MPM_KERNEL void mpm__sums(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum)
+/* Sums over the support of V N, component d, direction by direction: with k and ky constants no loop is left. */
+MPM_KERNEL mpm__wide mpm__sums(const mpm__weights *s, int p, int k, int ky, mpm_real (*V)[4], int d)
 {
-    int ix, iy, iz, p;
-    for (p = 0; p < s->n; p++) {
-        mpm_real all = 0;
-        for (iz = 0; iz < k; iz++) {
-            mpm_real plane = 0;
-            for (iy = 0; iy < ky; iy++) {
-                mpm_real line = 0;
-                for (ix = 0; ix < k; ix++) line += s->N[0][ix][p] * V[(iz * ky + iy) * k + ix];
-                plane += s->N[1][iy][p] * line;
-            }
-            all += s->N[2][iz][p] * plane;
+    mpm__wide all = mpm__load(&s->N[0][0][p]) * 0;
+    int ix, iy, iz;
+    for (iz = 0; iz < k; iz++) {
+        mpm__wide plane = all * 0;
+        for (iy = 0; iy < ky; iy++) {
+            mpm__wide line = all * 0;
+            for (ix = 0; ix < k; ix++) line += mpm__load(&s->N[0][ix][p]) * V[(iz * ky + iy) * k + ix][d];
+            plane += mpm__load(&s->N[1][iy][p]) * line;
         }
-        sum[p] = all;
+        all += mpm__load(&s->N[2][iz][p]) * plane;
     }
+    return all;
 }
 
 /* ... and the sums of V grad N: g[0], g[1], g[2]. */
-MPM_KERNEL void mpm__gradient_sums(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum,
-                                   mpm_real (*g)[MPM__LANES])
+MPM_KERNEL mpm__wide mpm__gradient_sums(const mpm__weights *s, int p, int k, int ky, mpm_real (*V)[4], int d,
+                                        mpm__wide *g)
 {
-    int ix, iy, iz, p;
-    for (p = 0; p < s->n; p++) {
-        mpm_real all = 0, gx = 0, gy = 0, gz = 0;
-        for (iz = 0; iz < k; iz++) {
-            mpm_real plane = 0, plane_x = 0, plane_y = 0;
-            for (iy = 0; iy < ky; iy++) {
-                mpm_real line = 0, line_x = 0;
-                for (ix = 0; ix < k; ix++) {
-                    line += s->N[0][ix][p] * V[(iz * ky + iy) * k + ix];
-                    line_x += s->dN[0][ix][p] * V[(iz * ky + iy) * k + ix];
-                }
-                plane += s->N[1][iy][p] * line;
-                plane_x += s->N[1][iy][p] * line_x;
-                plane_y += s->dN[1][iy][p] * line;
+    mpm__wide all = mpm__load(&s->N[0][0][p]) * 0;
+    int ix, iy, iz;
+    g[0] = g[1] = g[2] = all;
+    for (iz = 0; iz < k; iz++) {
+        const mpm__wide z = mpm__load(&s->N[2][iz][p]);
+        mpm__wide plane = all * 0, plane_x = plane, plane_y = plane;
+        for (iy = 0; iy < ky; iy++) {
+            const mpm__wide y = mpm__load(&s->N[1][iy][p]);
+            mpm__wide line = all * 0, line_x = line;
+            for (ix = 0; ix < k; ix++) {
+                const mpm_real v = V[(iz * ky + iy) * k + ix][d];
+                line += mpm__load(&s->N[0][ix][p]) * v;
+                line_x += mpm__load(&s->dN[0][ix][p]) * v;
             }
-            all += s->N[2][iz][p] * plane;
-            gx += s->N[2][iz][p] * plane_x;
-            gy += s->N[2][iz][p] * plane_y;
-            gz += s->dN[2][iz][p] * plane;
+            plane += y * line;
+            plane_x += y * line_x;
+            plane_y += mpm__load(&s->dN[1][iy][p]) * line;
         }
-        sum[p] = all;
-        g[0][p] = gx;
-        g[1][p] = gy;
-        g[2][p] = gz;
+        all += z * plane;
+        g[0] += z * plane_x;
+        g[1] += z * plane_y;
+        g[2] += mpm__load(&s->dN[2][iz][p]) * plane;
     }
+    return all;
 }
 
-/* ... for the supports there are beside those of linear functions. */
-static inline void mpm__wide_sums(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum)
-{
-    if (k == 3 && ky == 3) mpm__sums(s, 3, 3, V, sum);
-    else if (k == 3) mpm__sums(s, 3, 1, V, sum);
-    else if (ky == 4) mpm__sums(s, 4, 4, V, sum);
-    else mpm__sums(s, 4, 1, V, sum);
-}
-
-static inline void mpm__wide_gradient_sums(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum,
-                                           mpm_real (*g)[MPM__LANES])
-{
-    if (k == 3 && ky == 3) mpm__gradient_sums(s, 3, 3, V, sum, g);
-    else if (k == 3) mpm__gradient_sums(s, 3, 1, V, sum, g);
-    else if (ky == 4) mpm__gradient_sums(s, 4, 4, V, sum, g);
-    else mpm__gradient_sums(s, 4, 1, V, sum, g);
-}
-
-/* The same of V from mpm__as_polynomial. */
-MPM_KERNEL void mpm__values(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum)
+/* The same at points [at, at + n) of the weights, with the supports there are beside those of linear functions. */
+#define MPM__WIDE_SUMS(k, ky) \
+    for (p = at; p < at + n; p += MPM__WIDE) mpm__store(sum + p, mpm__sums(s, p, k, ky, V, d))
+static inline void mpm__wide_sums(const mpm__weights *s, int at, int n, int k, int ky, mpm_real (*V)[4], int d,
+                                  mpm_real *sum)
 {
     int p;
-    if (k != 2) mpm__wide_sums(s, k, ky, V, sum);
-    else
-        for (p = 0; p < s->n; p++) sum[p] = mpm__polynomial(s, p, ky, V);
+    if (k == 3 && ky == 3) MPM__WIDE_SUMS(3, 3);
+    else if (k == 3) MPM__WIDE_SUMS(3, 1);
+    else if (ky == 4) MPM__WIDE_SUMS(4, 4);
+    else MPM__WIDE_SUMS(4, 1);
 }
+#undef MPM__WIDE_SUMS
 
-MPM_KERNEL void mpm__values_gradient(const mpm__weights *s, int k, int ky, const mpm_real *V, mpm_real *sum,
-                                     mpm_real (*g)[MPM__LANES])
+/* Sums over the support of V N, for V from mpm__gather_polynomial, component d, at points [at, at + n) of the
+   weights. */
+MPM_KERNEL void mpm__values(const mpm__weights *s, int at, int n, int k, int ky, mpm_real (*V)[4], int d, mpm_real *sum)
 {
     int p;
-    if (k != 2) mpm__wide_gradient_sums(s, k, ky, V, sum, g);
+    if (k != 2) mpm__wide_sums(s, at, n, k, ky, V, d, sum);
     else
-        for (p = 0; p < s->n; p++) {
-            mpm_real at[3];
-            sum[p] = mpm__polynomial_gradient(s, p, ky, V, at);
-            g[0][p] = at[0];
-            g[1][p] = at[1];
-            g[2][p] = at[2];
+        for (p = at; p < at + n; p += MPM__WIDE) mpm__store(sum + p, mpm__polynomial(s, p, ky, V, d));
+}
+
+/* ... and the sums of V grad N: g[0], g[1], g[2]. */
+MPM_KERNEL void mpm__put_gradient(mpm__wide value, const mpm__wide *slope, int p, mpm_real *sum,
+                                  mpm_real (*g)[MPM__LANES])
+{
+    int e;
+    mpm__store(sum + p, value);
+    for (e = 0; e < 3; e++) mpm__store(&g[e][p], slope[e]);
+}
+
+#define MPM__WIDE_SUMS(k, ky)                                                    \
+    for (p = at; p < at + n; p += MPM__WIDE) {                                   \
+        const mpm__wide value = mpm__gradient_sums(s, p, k, ky, V, d, slope);    \
+        mpm__put_gradient(value, slope, p, sum, g);                              \
+    }
+static inline void mpm__wide_gradient_sums(const mpm__weights *s, int at, int n, int k, int ky, mpm_real (*V)[4], int d,
+                                           mpm_real *sum, mpm_real (*g)[MPM__LANES])
+{
+    mpm__wide slope[3];
+    int p;
+    if (k == 3 && ky == 3) MPM__WIDE_SUMS(3, 3)
+    else if (k == 3) MPM__WIDE_SUMS(3, 1)
+    else if (ky == 4) MPM__WIDE_SUMS(4, 4)
+    else MPM__WIDE_SUMS(4, 1)
+}
+#undef MPM__WIDE_SUMS
+
+MPM_KERNEL void mpm__values_gradient(const mpm__weights *s, int at, int n, int k, int ky, mpm_real (*V)[4], int d,
+                                     mpm_real *sum, mpm_real (*g)[MPM__LANES])
+{
+    int p;
+    if (k != 2) mpm__wide_gradient_sums(s, at, n, k, ky, V, d, sum, g);
+    else
+        for (p = at; p < at + n; p += MPM__WIDE) {
+            mpm__wide slope[3];
+            const mpm__wide value = mpm__polynomial_gradient(s, p, ky, V, d, slope);
+            mpm__put_gradient(value, slope, p, sum, g);
         }
 }
 
@@ -1432,29 +1544,26 @@ MPM_KERNEL mpm_real mpm__mirror(const mpm_run *r, int a, int d, int k, int ky)
 /* Which vector of a node a sweep fetches or adds to. */
 typedef enum mpm__vector { MPM__MOMENTUM, MPM__FORCE, MPM__VELOCITY } mpm__vector;
 
-MPM_KERNEL mpm_real *mpm__node_vector(mpm_node *n, mpm__vector which)
+MPM_KERNEL size_t mpm__offset(mpm__vector which)
 {
     switch (which) {
-    case MPM__MOMENTUM: return n->momentum;
-    case MPM__FORCE: return n->force;
-    default: return n->velocity;
+    case MPM__MOMENTUM: return offsetof(mpm_node, momentum);
+    case MPM__FORCE: return offsetof(mpm_node, force);
+    default: return offsetof(mpm_node, velocity);
     }
 }
 
-/* Nothing yet at the nodes of a run. */
-MPM_KERNEL void mpm__clear(int k, int ky, mpm_real V[3][MPM_SUPPORT])
+MPM_KERNEL mpm_real *mpm__node_vector(mpm_node *n, mpm__vector which)
 {
-    int a, d;
-    for (d = 0; d < 3; d++)
-        for (a = 0; a < k * ky * k; a++) V[d][a] = 0;
+    return (mpm_real *)(void *)((char *)n + mpm__offset(which));
 }
 
-/* The turning of images in V, node by node. */
-static inline void mpm__turn(const mpm_run *r, int k, int ky, mpm_real V[3][MPM_SUPPORT])
+/* The turning of images in V, which has a node's components at V[a node + d part]. */
+static inline void mpm__turn(const mpm_run *r, int k, int ky, mpm_real *V, int node, int part)
 {
     int a, d;
     for (a = 0; a < k * ky * k; a++)
-        for (d = 0; d < 3; d++) V[d][a] *= mpm__mirror(r, a, d, k, ky);
+        for (d = 0; d < 3; d++) V[a * node + d * part] *= mpm__mirror(r, a, d, k, ky);
 }
 
 /* Adds V, summed over points of a run, to its nodes. */
@@ -1463,37 +1572,37 @@ MPM_KERNEL void mpm__scatter(mpm_world *w, const mpm_run *r, int k, int ky, mpm_
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     int a, d;
-    if (r->flags & 63) mpm__turn(r, k, ky, V);
+    if (r->flags & 63) mpm__turn(r, k, ky, V[0], 1, MPM_SUPPORT);
     for (a = 0; a < k * ky * k; a++) {
         mpm_real *to = mpm__node_vector(&w->node[slot[a]], which);
         for (d = 0; d < 3; d++) to[d] += V[d][a];
     }
 }
 
-/* Fetches a vector of a run's nodes, divided by the nodal mass if per_mass. Nodes lighter than the
-   cutoff give zero. */
+/* Fetches a vector of a run's nodes, divided by the nodal mass if per_mass, with a fourth number beside it that nobody
+   uses. Nodes lighter than the cutoff give zero. */
 MPM_KERNEL void mpm__gather(const mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which, int per_mass,
-                            mpm_real V[3][MPM_SUPPORT])
+                            mpm_real (*V)[4])
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     const mpm_real cutoff = w->desc.mass_cutoff * w->body[r->body].point_mass;
-    mpm_real mass[MPM_SUPPORT];
+    mpm_real share[MPM_SUPPORT + 4];
     int a, d;
-    for (a = 0; a < k * ky * k; a++) {
-        mpm_node *n = &w->node[slot[a]];
-        const mpm_real *from = mpm__node_vector(n, which);
-        mass[a] = n->mass;
-        for (d = 0; d < 3; d++) V[d][a] = from[d];
+    for (a = 0; a < k * ky * k; a++) share[a] = w->node[slot[a]].mass;
+    for (a = 0; a < k * ky * k; a += MPM__WIDE) {
+        const mpm__wide m = mpm__load(share + a);
+        mpm__store(share + a, mpm__where_more(m, cutoff, per_mass ? 1 / m : m * 0 + 1));
     }
-    for (a = 0; a < k * ky * k; a++) mass[a] = mass[a] > cutoff ? (per_mass ? 1 / mass[a] : 1) : 0;
-    for (d = 0; d < 3; d++)
-        for (a = 0; a < k * ky * k; a++) V[d][a] *= mass[a];
-    if (r->flags & 63) mpm__turn(r, k, ky, V);
+    for (a = 0; a < k * ky * k; a++) {
+        const mpm_real *from = (const mpm_real *)(const void *)((const char *)&w->node[slot[a]] + mpm__offset(which));
+        for (d = 0; d < 4; d += MPM__WIDE) mpm__store(V[a] + d, mpm__load(from + d) * share[a]);
+    }
+    if (r->flags & 63) mpm__turn(r, k, ky, V[0], 4, 1);
 }
 
-/* ... as mpm__value wants it. */
+/* ... as mpm__values wants it. */
 MPM_KERNEL void mpm__gather_polynomial(const mpm_world *w, const mpm_run *r, int k, int ky, mpm__vector which,
-                                       int per_mass, mpm_real V[3][MPM_SUPPORT])
+                                       int per_mass, mpm_real (*V)[4])
 {
     mpm__gather(w, r, k, ky, which, per_mass, V);
     mpm__as_polynomial(k, ky, V);
@@ -1511,22 +1620,38 @@ MPM_KERNEL void mpm__gather_polynomial(const mpm_world *w, const mpm_run *r, int
         else call(2, 1, 1);                                                                    \
     } while (0)
 
-/* call(k, ky, hoop) for every run of w, which is `run` there. */
-#define MPM__EACH_RUN(w, rings, call)                                               \
-    do {                                                                            \
-        int32_t mpm__i;                                                             \
-        for (mpm__i = 0; mpm__i < (w)->runs; mpm__i++) {                            \
-            mpm_run *run = &(w)->run[mpm__i];                                       \
-            MPM__SPECIALISED(w, rings, call);                                       \
-        }                                                                           \
+/* call(k, ky, hoop) for every body of w: its runs are [from, to) there. */
+#define MPM__EACH_BODY(w, rings, call)                                                \
+    do {                                                                              \
+        int32_t body, from, to = 0;                                                   \
+        for (body = 0; body < (w)->bodies; body++) {                                  \
+            for (from = to; to < (w)->runs && (w)->run[to].body == body; to++) {}     \
+            MPM__SPECIALISED(w, rings, call);                                         \
+        }                                                                             \
     } while (0)
 
-/* Splits a run into pieces of at most MPM__LANES points. */
+/* Splits a run into pieces of at most MPM_BLOCK points. */
 #define MPM__EACH_PIECE(r, at, n)                                                                        \
     for (at = (r)->first; at < (r)->first + (r)->count &&                                                \
-         ((n = (int)((r)->first + (r)->count - at) < MPM__LANES ? (int)((r)->first + (r)->count - at)    \
-                                                                : MPM__LANES) > 0);                      \
+         ((n = (int)((r)->first + (r)->count - at) < MPM_BLOCK ? (int)((r)->first + (r)->count - at)     \
+                                                               : MPM_BLOCK) > 0);                        \
          at += n)
+
+/* 1 if no point of run r comes after those before `at`. */
+MPM_KERNEL int mpm__run_ends(const mpm_run *r, int32_t at) { return at == r->first + r->count; }
+
+/* Points of the next span of the runs [*r, end), which begins at `at`; *r is moved to the run of its first. */
+static inline int mpm__span(const mpm_run **r, const mpm_run *end, int32_t at)
+{
+    int32_t left;
+    while (*r < end && (*r)->first + (*r)->count <= at) (*r)++;
+    left = *r < end ? end[-1].first + end[-1].count - at : 0;
+    return left < MPM_BLOCK ? (int)left : MPM_BLOCK;
+}
+
+/* Splits the points of a body's runs [r, end) into spans of at most MPM_BLOCK, r being the run of a span's first. */
+#define MPM__EACH_SPAN(r, end, at, n)                                                                        \
+    for (at = (r) < (end) ? (r)->first : 0; (n = mpm__span(&(r), end, at)) > 0; at += n)
 
 /* ---- boundary conditions --------------------------------------------------------------------- */
 
@@ -1670,8 +1795,10 @@ static inline void mpm__support(const mpm_world *w, const mpm_run *run, const mp
     mpm__products(one, 0, k, ky, s->N);
     mpm__gradients(one, 0, k, ky, s->G);
     s->count = k * ky * k;
-    for (a = 0; a < s->count; a++)
-        for (s->mirror[a] = s->image[a] = 0, d = 0; d < 3; d++) {
+    memset(s->mirror, 0, sizeof s->mirror);
+    memset(s->image, 0, sizeof s->image);
+    for (a = 0; a < s->count && run->flags & 63; a++)
+        for (d = 0; d < 3; d++) {
             if (mpm__mirror(run, a, d, k, ky) < 0) s->mirror[a] = (uint8_t)(s->mirror[a] | 1 << d);
             if (mpm__turned(run, a, d, k, ky) < 0) s->image[a] = (uint8_t)(s->image[a] | 1 << d);
         }
@@ -1840,16 +1967,16 @@ static inline mpm_real mpm__calm_part(const mpm_points *q, const mpm__calmed *c,
 
 /* The direction of a run's nodes, or f_I. */
 static inline void mpm__calm_fetch(const mpm_world *w, const mpm_run *r, const mpm__calmed *c, int direction,
-                                   mpm_real V[3][MPM_SUPPORT])
+                                   mpm_real (*V)[4])
 {
     const int k = w->support[0], ky = w->support[1];
     const int32_t *slot = mpm__run_nodes(w, r);
     int a, d;
     for (a = 0; a < k * ky * k; a++) {
         const mpm_node *n = &w->node[slot[a]];
-        for (d = 0; d < 3; d++) V[d][a] = direction ? n->reaction[d] : n->momentum[d];
+        for (V[a][3] = 0, d = 0; d < 3; d++) V[a][d] = direction ? n->reaction[d] : n->momentum[d];
     }
-    if (c->parts == 3 && r->flags & 63) mpm__turn(r, k, ky, V);
+    if (c->parts == 3 && r->flags & 63) mpm__turn(r, k, ky, V[0], 4, 1);
     mpm__as_polynomial(k, ky, V);
 }
 
@@ -1857,14 +1984,14 @@ static inline void mpm__calm_fetch(const mpm_world *w, const mpm_run *r, const m
 MPM_KERNEL void mpm__calm_map_run(mpm_world *w, const mpm_run *r, int k, int ky, const mpm__calmed *c, int direction)
 {
     const int32_t *slot = mpm__run_nodes(w, r);
-    mpm_real V[3][MPM_SUPPORT], F[3][MPM_SUPPORT] = {{0}}, M[MPM_SUPPORT] = {0}, N[MPM_SUPPORT], seen[3][MPM__LANES];
+    mpm_real V[MPM_SUPPORT][4], F[3][MPM_SUPPORT] = {{0}}, M[MPM_SUPPORT] = {0}, N[MPM_SUPPORT], seen[3][MPM__LANES];
     mpm__weights s;
     int32_t at;
     int n, p, a, d;
     if (direction) mpm__calm_fetch(w, r, c, 1, V);
     MPM__EACH_PIECE(r, at, n) {
         mpm__weigh(w, r, at, n, k, ky, &s);
-        for (d = 0; d < c->parts && direction; d++) mpm__values(&s, k, ky, V[d], seen[d]);
+        for (d = 0; d < c->parts && direction; d++) mpm__values(&s, 0, n, k, ky, V, d, seen[d]);
         for (p = 0; p < n; p++) {
             const mpm_real m = w->points.mass[at + p];
             mpm__products(&s, p, k, ky, N);
@@ -1875,7 +2002,7 @@ MPM_KERNEL void mpm__calm_map_run(mpm_world *w, const mpm_run *r, int k, int ky,
             }
         }
     }
-    if (c->parts == 3 && r->flags & 63) mpm__turn(r, k, ky, F);
+    if (c->parts == 3 && r->flags & 63) mpm__turn(r, k, ky, F[0], 1, MPM_SUPPORT);
     for (a = 0; a < k * ky * k; a++) {
         w->node[slot[a]].mass += M[a];
         for (d = 0; d < 3; d++) w->node[slot[a]].force[d] += F[d][a];
@@ -2022,14 +2149,14 @@ static inline void mpm__calm_pressure(mpm_world *w, const mpm_body_desc *b, int3
 
 MPM_KERNEL void mpm__calm_run(mpm_world *w, const mpm_run *r, int k, int ky, const mpm__calmed *c, mpm_real share)
 {
-    mpm_real V[3][MPM_SUPPORT], seen[3][MPM__LANES], rest[3];
+    mpm_real V[MPM_SUPPORT][4], seen[3][MPM__LANES], rest[3];
     mpm__weights s;
     int32_t at;
     int n, p, d;
     mpm__calm_fetch(w, r, c, 0, V);
     MPM__EACH_PIECE(r, at, n) {
         mpm__weigh(w, r, at, n, k, ky, &s);
-        for (d = 0; d < c->parts; d++) mpm__values(&s, k, ky, V[d], seen[d]);
+        for (d = 0; d < c->parts; d++) mpm__values(&s, 0, n, k, ky, V, d, seen[d]);
         for (p = 0; p < n; p++) {
             for (d = 0; d < c->parts; d++) rest[d] = mpm__calm_part(&w->points, c, d, at + p) - seen[d][p];
             if (c->parts == 3) mpm__calm_velocity(w, at + p, rest, share);
@@ -2090,81 +2217,223 @@ MPM_API void mpm_calm(mpm_world *w)
 /* What a sweep over the points does; two that follow each other share one sweep and its weights. */
 enum { MPM__P2G = 1, MPM__FORCES = 2, MPM__G2P = 4, MPM__MUSL = 8 };
 
-/* P_I += m_p v_p N_I of a piece of a run (A 3.24), and with mass m_I += m_p N_I (A 3.23). */
-MPM_KERNEL void mpm__momentum_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int mass,
-                                    mpm_real *M, mpm_real P[3][MPM_SUPPORT])
+/* What the points of a span give to their nodes: mass, momentum, stress times minus their volume, and in rings the pull
+   of the hoop stress inwards. */
+typedef struct mpm__gifts {
+    mpm_real mass[MPM__LANES], momentum[3][MPM__LANES], stress[6][MPM__LANES], pull[MPM__LANES];
+} mpm__gifts;
+
+/* Their sums at the nodes of a run, in lines of four along x: with three nodes along x the fourth is idle. */
+typedef struct mpm__shares {
+    mpm_real mass[MPM_SUPPORT], momentum[3][MPM_SUPPORT], force[3][MPM_SUPPORT];
+} mpm__shares;
+
+/* Some of these sums, side by side. */
+typedef struct mpm__lot {
+    mpm__wide mass, momentum[3], force[3];
+} mpm__lot;
+
+/* m_p v_p of points [at, at + n). */
+MPM_KERNEL void mpm__give_momentum(const mpm_points *q, int32_t at, int n, mpm__gifts *g)
 {
-    const mpm_points *q = &w->points;
-    const int nodes = mpm__reach(w);
-    mpm_real N[MPM_SUPPORT];
-    int p, a;
-    for (p = 0; p < s->n; p++) {
-        const mpm_real m = q->mass[at + p];
-        const mpm_real px = m * q->v[0][at + p], py = m * q->v[1][at + p], pz = m * q->v[2][at + p];
-        mpm__products(s, p, k, ky, N);
-        for (a = 0; a < nodes; a++) {
-            if (mass) M[a] += m * N[a];
-            P[0][a] += px * N[a];
-            P[1][a] += py * N[a];
-            P[2][a] += pz * N[a];
-        }
+    int p, d;
+    for (p = 0; p < n; p++) g->mass[p] = q->mass[at + p];
+    for (d = 0; d < 3; d++)
+        for (p = 0; p < n; p++) g->momentum[d][p] = g->mass[p] * q->v[d][at + p];
+}
+
+/* -(m_p / rho_p) sigma_p of points [at, at + n), and the part of it that pulls rings inwards. */
+MPM_KERNEL void mpm__give_stress(const mpm_points *q, int32_t at, int n, int hoop, mpm__gifts *g)
+{
+    mpm_real volume[MPM__LANES];
+    int p, c;
+    for (p = 0; p < n; p++) volume[p] = -q->mass[at + p] / q->density[at + p];
+    for (c = 0; c < 6; c++)
+        for (p = 0; p < n; p++) g->stress[c][p] = volume[p] * q->stress[c][at + p];
+    for (p = 0; p < n && hoop; p++) g->pull[p] = g->stress[1][p] / q->x[0][at + p];
+}
+
+MPM_KERNEL void mpm__lot_fetch(mpm__lot *l, const mpm__shares *from, int a)
+{
+    int d;
+    l->mass = mpm__load(from->mass + a);
+    for (d = 0; d < 3; d++) l->momentum[d] = mpm__load(from->momentum[d] + a);
+    for (d = 0; d < 3; d++) l->force[d] = mpm__load(from->force[d] + a);
+}
+
+MPM_KERNEL void mpm__lot_put(const mpm__lot *l, mpm__shares *to, int a, int what)
+{
+    int d;
+    if (what & MPM__P2G) mpm__store(to->mass + a, l->mass);
+    for (d = 0; d < 3 && what & (MPM__P2G | MPM__MUSL); d++) mpm__store(to->momentum[d] + a, l->momentum[d]);
+    for (d = 0; d < 3 && what & MPM__FORCES; d++) mpm__store(to->force[d] + a, l->force[d]);
+}
+
+/* m_I += m_p N_I (A 3.23), P_I += m_p v_p N_I (A 3.24, 3.33) and f_I -= (m_p / rho_p) sigma_p . grad N_I (A 3.25), in
+   rings with f_Ir -= (m_p / rho_p) sigma_hoop N_I / r_p, of point p at the nodes that N and G belong to. */
+MPM_KERNEL void mpm__lot_add(mpm__lot *l, const mpm__gifts *g, int p, mpm__wide N, const mpm__wide *G, int hoop,
+                             int what)
+{
+    int d;
+    if (what & MPM__P2G) l->mass += g->mass[p] * N;
+    for (d = 0; d < 3 && what & (MPM__P2G | MPM__MUSL); d++) l->momentum[d] += g->momentum[d][p] * N;
+    if (what & MPM__FORCES) {
+        const mpm_real xx = g->stress[0][p], yy = g->stress[1][p], zz = g->stress[2][p];
+        const mpm_real yz = g->stress[3][p], xz = g->stress[4][p], xy = g->stress[5][p];
+        l->force[0] += xx * G[0] + xy * G[1] + xz * G[2];
+        l->force[1] += xy * G[0] + yy * G[1] + yz * G[2];
+        l->force[2] += xz * G[0] + yz * G[1] + zz * G[2];
+        if (hoop) l->force[0] += g->pull[p] * N;
     }
 }
 
-/* f_I -= (m_p / rho_p) sigma_p . grad N_I (A 3.25); in rings f_Ir -= (m_p / rho_p) sigma_hoop N_I / r_p too. */
-MPM_KERNEL void mpm__forces_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int hoop,
-                                  mpm_real F[3][MPM_SUPPORT])
+/* Which of 1 - u and u a corner of a cell has of an axis: 1 - u = 1 + (-1) u, u = 0 + 1 u. */
+MPM_KERNEL mpm__wide mpm__corner_sign(int a, int stride)
 {
-    const mpm_points *q = &w->points;
-    const int nodes = mpm__reach(w);
-    mpm_real G[3][MPM_SUPPORT], N[MPM_SUPPORT];
-    int p, a;
-    for (p = 0; p < s->n; p++) {
-        const int32_t i = at + p;
-        const mpm_real V = -q->mass[i] / q->density[i];
-        const mpm_real xx = V * q->stress[0][i], yy = V * q->stress[1][i], zz = V * q->stress[2][i];
-        const mpm_real yz = V * q->stress[3][i], xz = V * q->stress[4][i], xy = V * q->stress[5][i];
-        mpm__gradients(s, p, k, ky, G);
-        for (a = 0; a < nodes; a++) {
-            F[0][a] += xx * G[0][a] + xy * G[1][a] + xz * G[2][a];
-            F[1][a] += xy * G[0][a] + yy * G[1][a] + yz * G[2][a];
-            F[2][a] += xz * G[0][a] + yz * G[1][a] + zz * G[2][a];
+    static const mpm_real sign[3][8] = {
+        {-1, 1, -1, 1, -1, 1, -1, 1}, {-1, -1, 1, 1, -1, -1, 1, 1}, {-1, -1, -1, -1, 1, 1, 1, 1}};
+    return mpm__load(sign[stride / 2] + a);
+}
+
+MPM_KERNEL mpm__wide mpm__corner_start(int a, int stride)
+{
+    static const mpm_real start[3][8] = {{1, 0, 1, 0, 1, 0, 1, 0}, {1, 1, 0, 0, 1, 1, 0, 0}, {1, 1, 1, 1, 0, 0, 0, 0}};
+    return mpm__load(start[stride / 2] + a);
+}
+
+/* Adds points [at, at + n) of a span to the corners of their cell: linear functions. */
+MPM_KERNEL void mpm__share_corners(const mpm__weights *s, const mpm__gifts *g, int at, int n, int ky, int hoop,
+                                   int what, mpm__shares *to)
+{
+    int a, p;
+    for (a = 0; a < 4 * ky; a += MPM__WIDE) {
+        const mpm__wide sx = mpm__corner_sign(a, 1), x0 = mpm__corner_start(a, 1), dx = sx * s->slope;
+        const mpm__wide sy = mpm__corner_sign(a, 2), y0 = mpm__corner_start(a, 2), dy = sy * s->slope;
+        const mpm__wide sz = mpm__corner_sign(a, 2 * ky), z0 = mpm__corner_start(a, 2 * ky), dz = sz * s->slope;
+        mpm__lot l;
+        mpm__lot_fetch(&l, to, a);
+        for (p = at; p < at + n; p++) {
+            const mpm__wide X = x0 + sx * s->N[0][1][p], Z = z0 + sz * s->N[2][1][p];
+            const mpm__wide Y = ky > 1 ? y0 + sy * s->N[1][1][p] : Z, YZ = ky > 1 ? Y * Z : Z;
+            const mpm__wide G[3] = {dx * YZ, ky > 1 ? X * (dy * Z) : X * 0, ky > 1 ? X * (Y * dz) : X * dz};
+            mpm__lot_add(&l, g, p, X * YZ, G, hoop, what);
         }
-        if (hoop) { /* the hoop stress pulls the ring inwards */
-            const mpm_real pull = yy / q->x[0][i];
-            mpm__products(s, p, k, ky, N);
-            for (a = 0; a < nodes; a++) F[0][a] += pull * N[a];
-        }
+        mpm__lot_put(&l, to, a, what);
     }
 }
 
-/* The sums of one run to its nodes: mass and momentum, forces, or both. */
-MPM_KERNEL void mpm__to_nodes_run(mpm_world *w, const mpm_run *r, int k, int ky, int hoop, int what)
+/* The weights along x of each point side by side. */
+typedef struct mpm__along {
+    mpm_real N[MPM__LANES][4], dN[MPM__LANES][4];
+} mpm__along;
+
+static inline void mpm__along_x(const mpm__weights *s, int k, mpm__along *x)
 {
-    mpm_real M[MPM_SUPPORT], P[3][MPM_SUPPORT], F[3][MPM_SUPPORT];
+    int p, i;
+    for (p = 0; p < s->n; p++)
+        for (i = 0; i < 4; i++) {
+            x->N[p][i] = i < k ? s->N[0][i][p] : 0;
+            x->dN[p][i] = i < k ? s->dN[0][i][p] : 0;
+        }
+}
+
+/* Adds points [at, at + n) of a span to the lines of their nodes: all other functions. */
+MPM_KERNEL void mpm__share_lines(const mpm__weights *s, const mpm__along *x, const mpm__gifts *g, int at, int n, int k,
+                                 int ky, int hoop, int what, mpm__shares *to)
+{
+    int iy, iz, i, p;
+    for (iz = 0; iz < k; iz++)
+        for (iy = 0; iy < ky; iy++)
+            for (i = 0; i < 4; i += MPM__WIDE) {
+                const int a = (iz * ky + iy) * 4 + i;
+                mpm__lot l;
+                mpm__lot_fetch(&l, to, a);
+                for (p = at; p < at + n; p++) {
+                    const mpm_real y = s->N[1][iy][p], z = s->N[2][iz][p];
+                    const mpm_real yz = y * z, dyz = s->dN[1][iy][p] * z, ydz = y * s->dN[2][iz][p];
+                    const mpm__wide X = mpm__load(x->N[p] + i);
+                    const mpm__wide G[3] = {mpm__load(x->dN[p] + i) * yz, X * dyz, X * ydz};
+                    mpm__lot_add(&l, g, p, X * yz, G, hoop, what);
+                }
+                mpm__lot_put(&l, to, a, what);
+            }
+}
+
+/* Where node a of a run is among its lines of four. */
+MPM_KERNEL int mpm__in_lines(int a, int k) { return k == 3 ? a / 3 * 4 + a % 3 : a; }
+
+MPM_KERNEL void mpm__share_out(const mpm__weights *s, const mpm__along *x, const mpm__gifts *g, int at, int n, int k,
+                               int ky, int hoop, int what, mpm__shares *to)
+{
+    if (k == 2) mpm__share_corners(s, g, at, n, ky, hoop, what, to);
+    else mpm__share_lines(s, x, g, at, n, k, ky, hoop, what, to);
+}
+
+MPM_KERNEL void mpm__clear_shares(int k, int ky, mpm__shares *s)
+{
+    const int n = k == 2 ? 4 * ky : 4 * ky * k;
+    int a, d;
+    for (a = 0; a < n; a++) s->mass[a] = 0;
+    for (d = 0; d < 3; d++)
+        for (a = 0; a < n; a++) s->momentum[d][a] = s->force[d][a] = 0;
+}
+
+/* The turning of images in what a run's nodes get. */
+static inline void mpm__turn_shares(const mpm_run *r, int k, int ky, mpm__shares *s)
+{
+    int a, d;
+    for (a = 0; a < k * ky * k; a++)
+        for (d = 0; d < 3; d++) {
+            const mpm_real turn = mpm__mirror(r, a, d, k, ky);
+            s->momentum[d][mpm__in_lines(a, k)] *= turn;
+            s->force[d][mpm__in_lines(a, k)] *= turn;
+        }
+}
+
+/* The sums to the nodes of run r; nothing is left of them. */
+MPM_KERNEL void mpm__hand_out(mpm_world *w, const mpm_run *r, int k, int ky, int what, mpm__shares *s)
+{
     const int32_t *slot = mpm__run_nodes(w, r);
+    int a, d;
+    if (r->flags & 63) mpm__turn_shares(r, k, ky, s);
+    for (a = 0; a < k * ky * k; a++) {
+        const int from = mpm__in_lines(a, k);
+        mpm_node *n = &w->node[slot[a]];
+        if (what & MPM__P2G) n->mass += s->mass[from];
+        for (d = 0; d < 3 && what & MPM__P2G; d++) n->momentum[d] += s->momentum[d][from];
+        for (d = 0; d < 3 && what & MPM__FORCES; d++) n->force[d] += s->force[d][from];
+        for (d = 0; d < 3 && what & MPM__MUSL; d++) n->velocity[d] += s->momentum[d][from];
+    }
+    mpm__clear_shares(k, ky, s);
+}
+
+MPM_KERNEL void mpm__to_nodes_body(mpm_world *w, const mpm_run *r, const mpm_run *end, int k, int ky, int hoop,
+                                   int what)
+{
     mpm__weights s;
-    int32_t at;
-    int n, a;
-    for (a = 0; a < k * ky * k; a++) M[a] = 0;
-    mpm__clear(k, ky, P);
-    mpm__clear(k, ky, F);
-    MPM__EACH_PIECE(r, at, n) {
-        mpm__weigh(w, r, at, n, k, ky, &s);
-        if (what & MPM__P2G) mpm__momentum_piece(w, &s, at, k, ky, 1, M, P);
-        if (what & MPM__FORCES) mpm__forces_piece(w, &s, at, k, ky, hoop, F);
+    mpm__along x;
+    mpm__gifts g;
+    mpm__shares sums;
+    int32_t first;
+    int n, at, part;
+    mpm__clear_shares(k, ky, &sums);
+    MPM__EACH_SPAN(r, end, first, n) {
+        const mpm_run *of = r;
+        mpm__weigh_span(w, r, first, n, k, ky, &s);
+        if (k != 2) mpm__along_x(&s, k, &x);
+        if (what & MPM__P2G) mpm__give_momentum(&w->points, first, n, &g);
+        if (what & MPM__FORCES) mpm__give_stress(&w->points, first, n, hoop, &g);
+        MPM__EACH_PART(of, first, n, at, part) {
+            mpm__share_out(&s, &x, &g, at, part, k, ky, hoop, what, &sums);
+            if (mpm__run_ends(of, first + at + part)) mpm__hand_out(w, of, k, ky, what, &sums);
+        }
     }
-    if (what & MPM__P2G) {
-        for (a = 0; a < k * ky * k; a++) w->node[slot[a]].mass += M[a];
-        mpm__scatter(w, r, k, ky, MPM__MOMENTUM, P);
-    }
-    if (what & MPM__FORCES) mpm__scatter(w, r, k, ky, MPM__FORCE, F);
 }
 
 static inline void mpm__sweep_to_nodes(mpm_world *w, int what)
 {
-#define MPM__CALL(k, ky, hoop) mpm__to_nodes_run(w, run, k, ky, hoop, what)
-    MPM__EACH_RUN(w, 1, MPM__CALL);
+#define MPM__CALL(k, ky, hoop) mpm__to_nodes_body(w, w->run + from, w->run + to, k, ky, hoop, what)
+    MPM__EACH_BODY(w, 1, MPM__CALL);
 #undef MPM__CALL
 }
 
@@ -2222,7 +2491,7 @@ static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r)
     const mpm_points *q = &w->points;
     const mpm_body *b = &w->body[r->body];
     const mpm_body_desc *d = &b->desc;
-    mpm_real F[3][MPM_SUPPORT] = {{0}}, V[3][MPM_SUPPORT], N[MPM_SUPPORT], moves[3][MPM__LANES];
+    mpm_real F[3][MPM_SUPPORT] = {{0}}, V[MPM_SUPPORT][4], N[MPM_SUPPORT], moves[3][MPM__LANES];
     mpm__weights s;
     int32_t at;
     int n, p, a, c, face, any = 0;
@@ -2231,7 +2500,7 @@ static inline void mpm__absorb_run(mpm_world *w, const mpm_run *r)
     mpm__gather_polynomial(w, r, k, ky, MPM__MOMENTUM, 1, V);
     MPM__EACH_PIECE(r, at, n) {
         mpm__weigh(w, r, at, n, k, ky, &s);
-        for (c = 0; c < 3; c++) mpm__values(&s, k, ky, V[c], moves[c]);
+        for (c = 0; c < 3; c++) mpm__values(&s, 0, n, k, ky, V, c, moves[c]);
         for (p = 0; p < n; p++)
             for (face = 0; face < 2; face++) {
                 const int32_t i = at + p;
@@ -2660,16 +2929,34 @@ static inline void mpm__pairs_at(mpm_world *w, int32_t i)
         }
 }
 
+/* The lowest and the highest layer of nodes along z that has pairs. */
+static inline void mpm__pair_layers(const mpm_world *w, int32_t *low, int32_t *high)
+{
+    const int32_t layer = w->nodes_per_axis[0] * w->nodes_per_axis[1];
+    int32_t i;
+    *low = w->nodes_per_axis[2];
+    *high = -1;
+    for (i = 0; i < w->pairs; i++) {
+        const int32_t z = w->node[w->pair[i].a].index / layer;
+        *low = z < *low ? z : *low;
+        *high = z > *high ? z : *high;
+    }
+}
+
 /* Marks the runs that touch a contact node. */
 static inline void mpm__contact_runs(mpm_world *w)
 {
     const int reach = mpm__reach(w);
-    int32_t i;
+    int32_t i, low, high;
     int s;
-    for (i = 0; i < w->runs; i++)
+    mpm__pair_layers(w, &low, &high);
+    for (i = 0; i < w->runs; i++) {
+        mpm_run *r = &w->run[i];
+        const int32_t *slot = mpm__run_nodes(w, r);
+        if (!(r->flags & 63) && (r->base[2] > high || r->base[2] + w->support[2] <= low)) continue;
         for (s = 0; s < reach; s++)
-            if (w->node[w->slot[(size_t)i * (size_t)reach + (size_t)s]].flags & MPM_NODE_CONTACT)
-                w->run[i].flags |= MPM_NODE_CONTACT;
+            if (w->node[slot[s]].flags & MPM_NODE_CONTACT) r->flags |= MPM_NODE_CONTACT;
+    }
 }
 
 MPM_API void mpm_contact_find(mpm_world *w)
@@ -2998,41 +3285,60 @@ MPM_API void mpm_contact_apply(mpm_world *w)
 
 /* ---- back to the points ---------------------------------------------------------------------- */
 
-/* x_p += f sum N_I V_I of a piece of a run, for a vector x of the points. */
-MPM_KERNEL void mpm__add_values(const mpm__weights *s, int k, int ky, mpm_real V[3][MPM_SUPPORT], mpm_real f,
-                                mpm_real *const x[3], int32_t at)
+/* Sums N_I V_I at the points of a span, V a vector of the nodes. */
+MPM_KERNEL void mpm__span_values(const mpm_world *w, const mpm_run *r, const mpm__weights *s, int32_t first, int k,
+                                 int ky, mpm__vector which, mpm_real (*sum)[MPM__LANES])
 {
-    mpm_real sum[MPM__LANES];
-    int p, d;
-    for (d = 0; d < 3; d++) {
-        mpm_real *to = x[d] + at;
-        mpm__values(s, k, ky, V[d], sum);
-        for (p = 0; p < s->n; p++) to[p] += f * sum[p];
+    mpm_real V[MPM_SUPPORT][4];
+    int at, part, d;
+    MPM__EACH_PART(r, first, s->n, at, part) {
+        mpm__gather_polynomial(w, r, k, ky, which, 1, V);
+        for (d = 0; d < 3; d++) mpm__values(s, at, part, k, ky, V, d, sum[d]);
     }
 }
 
-/* v_p += dt sum N_I f_I / m_I of one run (A 3.32), v_I += m_p v_p N_I (A 3.33), or both. */
-MPM_KERNEL void mpm__velocities_run(mpm_world *w, const mpm_run *r, int k, int ky, int what)
+/* x_p += f sum_p of points [at, at + n), for a vector x of the points. */
+MPM_KERNEL void mpm__advance(mpm_real *const x[3], int32_t at, int n, mpm_real f, mpm_real (*sum)[MPM__LANES])
 {
-    const mpm_real dt = w->dt;
-    mpm_real A[3][MPM_SUPPORT], P[3][MPM_SUPPORT];
-    mpm__weights s;
-    int32_t at;
-    int n;
-    mpm__clear(k, ky, P);
-    if (what & MPM__G2P) mpm__gather_polynomial(w, r, k, ky, MPM__FORCE, 1, A);
-    MPM__EACH_PIECE(r, at, n) {
-        mpm__weigh(w, r, at, n, k, ky, &s);
-        if (what & MPM__G2P) mpm__add_values(&s, k, ky, A, dt, w->points.v, at);
-        if (what & MPM__MUSL) mpm__momentum_piece(w, &s, at, k, ky, 0, NULL, P);
+    int p, d;
+    for (d = 0; d < 3; d++) {
+        mpm_real *to = x[d] + at;
+        for (p = 0; p < n; p++) to[p] += f * sum[d][p];
     }
-    if (what & MPM__MUSL) mpm__scatter(w, r, k, ky, MPM__VELOCITY, P);
+}
+
+/* v_p += dt sum N_I f_I / m_I of one body (A 3.32), v_I += m_p v_p N_I (A 3.33), or both. */
+MPM_KERNEL void mpm__velocities_body(mpm_world *w, const mpm_run *r, const mpm_run *end, int k, int ky, int what)
+{
+    mpm_real sum[3][MPM__LANES];
+    mpm__weights s;
+    mpm__along x;
+    mpm__gifts g;
+    mpm__shares sums;
+    int32_t first;
+    int n, at, part;
+    mpm__clear_shares(k, ky, &sums);
+    MPM__EACH_SPAN(r, end, first, n) {
+        const mpm_run *of = r;
+        mpm__weigh_span(w, r, first, n, k, ky, &s);
+        if (what & MPM__G2P) {
+            mpm__span_values(w, r, &s, first, k, ky, MPM__FORCE, sum);
+            mpm__advance(w->points.v, first, n, w->dt, sum);
+        }
+        if (!(what & MPM__MUSL)) continue;
+        if (k != 2) mpm__along_x(&s, k, &x);
+        mpm__give_momentum(&w->points, first, n, &g);
+        MPM__EACH_PART(of, first, n, at, part) {
+            mpm__share_out(&s, &x, &g, at, part, k, ky, 0, MPM__MUSL, &sums);
+            if (mpm__run_ends(of, first + at + part)) mpm__hand_out(w, of, k, ky, MPM__MUSL, &sums);
+        }
+    }
 }
 
 static inline void mpm__sweep_velocities(mpm_world *w, int what)
 {
-#define MPM__CALL(k, ky, hoop) mpm__velocities_run(w, run, k, ky, what)
-    MPM__EACH_RUN(w, 0, MPM__CALL);
+#define MPM__CALL(k, ky, hoop) mpm__velocities_body(w, w->run + from, w->run + to, k, ky, what)
+    MPM__EACH_BODY(w, 0, MPM__CALL);
 #undef MPM__CALL
 }
 
@@ -3041,7 +3347,7 @@ static inline void mpm__sweep_velocities(mpm_world *w, int what)
 static inline void mpm__mirror_run(mpm_world *w, const mpm_run *r)
 {
     const int k = w->support[0], ky = w->support[1];
-    mpm_real A[3][MPM_SUPPORT], N[MPM_SUPPORT];
+    mpm_real A[MPM_SUPPORT][4], N[MPM_SUPPORT];
     mpm__weights s;
     int32_t at;
     int n, p, a, d;
@@ -3053,7 +3359,7 @@ static inline void mpm__mirror_run(mpm_world *w, const mpm_run *r)
             mpm__products(&s, p, k, ky, N);
             for (d = 0; d < 3; d++)
                 for (a = 0; a < k * ky * k; a++)
-                    if (mpm__mirror(r, a, d, k, ky) < 0) w->ledger.impulse[d] += (double)(m * N[a] * A[d][a]);
+                    if (mpm__mirror(r, a, d, k, ky) < 0) w->ledger.impulse[d] += (double)(m * N[a] * A[a][d]);
         }
     }
 }
@@ -3127,26 +3433,35 @@ MPM_API void mpm_to_points(mpm_world *w)
     mpm__close_musl(w);
 }
 
-/* Strain and rotation increments of a piece of a run, d eps_ij = dt (dv_i/dx_j + dv_j/dx_i) / 2 with dv_i/dx_j =
-   sum v_Ii dN_I/dx_j, and half the curl of v times dt (A 3.35); in rings d eps_hoop = dt v_r / r. */
-MPM_KERNEL void mpm__strain_piece(const mpm_world *w, const mpm__weights *s, int32_t at, int k, int ky, int hoop,
-                                  mpm_real V[3][MPM_SUPPORT], mpm_real (*e)[MPM_BLOCK],
-                                  mpm_real (*spin)[MPM_BLOCK], int to)
+/* Velocity and its gradient, dv_i/dx_j = sum v_Ii dN_I/dx_j, at the points of a span: v[i] and g[i][j]. */
+MPM_KERNEL void mpm__span_gradients(const mpm_world *w, const mpm_run *r, const mpm__weights *s, int32_t first, int k,
+                                    int ky, mpm_real (*v)[MPM__LANES], mpm_real (*g)[3][MPM__LANES])
 {
-    const mpm_real *radius = w->points.x[0] + at, dt = w->dt, half = MPM_R(0.5) * w->dt;
-    mpm_real v[3][MPM__LANES], g[3][3][MPM__LANES];
-    int p, d;
-    for (d = 0; d < 3; d++) mpm__values_gradient(s, k, ky, V[d], v[d], g[d]);
-    for (p = 0; p < s->n; p++) {
-        e[0][to + p] = dt * g[0][0][p];
-        e[1][to + p] = dt * (hoop ? v[0][p] / radius[p] : g[1][1][p]);
-        e[2][to + p] = dt * g[2][2][p];
-        e[3][to + p] = half * (g[1][2][p] + g[2][1][p]);
-        e[4][to + p] = half * (g[0][2][p] + g[2][0][p]);
-        e[5][to + p] = half * (g[0][1][p] + g[1][0][p]);
-        spin[0][to + p] = half * (g[2][1][p] - g[1][2][p]);
-        spin[1][to + p] = half * (g[0][2][p] - g[2][0][p]);
-        spin[2][to + p] = half * (g[1][0][p] - g[0][1][p]);
+    mpm_real V[MPM_SUPPORT][4];
+    int at, part, d;
+    MPM__EACH_PART(r, first, s->n, at, part) {
+        mpm__gather_polynomial(w, r, k, ky, MPM__VELOCITY, 0, V);
+        for (d = 0; d < 3; d++) mpm__values_gradient(s, at, part, k, ky, V, d, v[d], g[d]);
+    }
+}
+
+/* Strain and rotation increments of n points, d eps_ij = dt (dv_i/dx_j + dv_j/dx_i) / 2, and half the curl of v times
+   dt (A 3.35); in rings d eps_hoop = dt v_r / r. */
+MPM_KERNEL void mpm__strains(mpm_real dt, int n, int hoop, const mpm_real *radius, mpm_real (*v)[MPM__LANES],
+                             mpm_real (*g)[3][MPM__LANES], mpm_real (*e)[MPM_BLOCK], mpm_real (*spin)[MPM_BLOCK])
+{
+    const mpm_real half = MPM_R(0.5) * dt;
+    int p;
+    for (p = 0; p < n; p++) {
+        e[0][p] = dt * g[0][0][p];
+        e[1][p] = dt * (hoop ? v[0][p] / radius[p] : g[1][1][p]);
+        e[2][p] = dt * g[2][2][p];
+        e[3][p] = half * (g[1][2][p] + g[2][1][p]);
+        e[4][p] = half * (g[0][2][p] + g[2][0][p]);
+        e[5][p] = half * (g[0][1][p] + g[1][0][p]);
+        spin[0][p] = half * (g[2][1][p] - g[1][2][p]);
+        spin[1][p] = half * (g[0][2][p] - g[2][0][p]);
+        spin[2][p] = half * (g[1][0][p] - g[0][1][p]);
     }
 }
 
@@ -3197,46 +3512,57 @@ static inline mpm_status mpm__constitute(mpm_world *w, const mpm_body *body, int
     return s;
 }
 
+/* 0 where no node of the run has a record, told without a look at them. */
+static inline int mpm__may_touch(const mpm_world *w, const mpm_run *r)
+{
+    return w->touches > 0 && (r->flags & MPM_NODE_CONTACT || mpm__has_walls(&w->desc));
+}
+
 /* 1 if a node of the run has a record: of a contact or a wall. */
 static inline int mpm__run_touches(const mpm_world *w, const mpm_run *r)
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     int a;
+    if (!mpm__may_touch(w, r)) return 0;
     for (a = 0; a < mpm__reach(w); a++)
         if (w->node[slot[a]].touch >= 0) return 1;
     return 0;
 }
 
+/* Moves the points of a span, x_p += dt sum N_I P_I / m_I (A 3.32), but for runs that touch unless `all`. */
+MPM_KERNEL void mpm__span_moves(mpm_world *w, const mpm_run *r, const mpm__weights *s, int32_t first, int k, int ky,
+                                int all)
+{
+    mpm_real V[MPM_SUPPORT][4], sum[3][MPM__LANES];
+    int at, part, p, d;
+    MPM__EACH_PART(r, first, s->n, at, part) {
+        if (all || !mpm__run_touches(w, r)) {
+            mpm__gather_polynomial(w, r, k, ky, MPM__MOMENTUM, 1, V);
+            for (d = 0; d < 3; d++) mpm__values(s, at, part, k, ky, V, d, sum[d]);
+        } else {
+            for (d = 0; d < 3; d++)
+                for (p = at; p < at + part; p++) sum[d][p] = 0;
+        }
+    }
+    mpm__advance(w->points.x, first, s->n, w->dt, sum);
+}
+
 /* Strain increments of all points of one body, a block at a time. With `move` points are moved too, but not those of
    runs that touch: the ledger of their cut velocities asks for level k. */
-MPM_KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, int32_t run, int32_t runs, int k, int ky, int hoop,
-                                       int move)
+MPM_KERNEL mpm_status mpm__stress_body(mpm_world *w, int32_t body, const mpm_run *r, const mpm_run *end, int k, int ky,
+                                       int hoop, int move)
 {
-    mpm_real e[6][MPM_BLOCK], spin[3][MPM_BLOCK], V[3][MPM_SUPPORT], U[3][MPM_SUPPORT];
-    int32_t first = w->body[body].first;
-    int filled = 0;
-    mpm__weights weights;
-    mpm_status s;
-    for (; run < runs; run++) {
-        const mpm_run *r = &w->run[run];
-        const int moves = move && !mpm__run_touches(w, r);
-        int32_t at = r->first;
-        mpm__gather_polynomial(w, r, k, ky, MPM__VELOCITY, 0, V);
-        if (moves) mpm__gather_polynomial(w, r, k, ky, MPM__MOMENTUM, 1, U);
-        while (at < r->first + r->count) {
-            int n = (int)(r->first + r->count - at);
-            if (n > MPM_BLOCK - filled) n = MPM_BLOCK - filled;
-            if (n > MPM__LANES) n = MPM__LANES;
-            mpm__weigh(w, r, at, n, k, ky, &weights);
-            mpm__strain_piece(w, &weights, at, k, ky, hoop, V, e, spin, filled);
-            if (moves) mpm__add_values(&weights, k, ky, U, w->dt, w->points.x, at);
-            at += n;
-            filled += n;
-            if (filled < MPM_BLOCK && !(run + 1 == runs && at == r->first + r->count)) continue;
-            if ((s = mpm__constitute(w, &w->body[body], first, filled, e, spin)) < 0) return s;
-            first += filled;
-            filled = 0;
-        }
+    mpm_real e[6][MPM_BLOCK], spin[3][MPM_BLOCK], v[3][MPM__LANES], g[3][3][MPM__LANES];
+    int32_t first;
+    int n;
+    mpm__weights s;
+    MPM__EACH_SPAN(r, end, first, n) {
+        mpm_status status;
+        mpm__weigh_span(w, r, first, n, k, ky, &s);
+        mpm__span_gradients(w, r, &s, first, k, ky, v, g);
+        mpm__strains(w->dt, n, hoop, w->points.x[0] + first, v, g, e, spin);
+        if (move) mpm__span_moves(w, r, &s, first, k, ky, 0);
+        if ((status = mpm__constitute(w, &w->body[body], first, n, e, spin)) < 0) return status;
     }
     return MPM_OK;
 }
@@ -3271,6 +3597,7 @@ static inline int mpm__run_is_cut(const mpm_world *w, const mpm_run *r)
 {
     const int32_t *slot = mpm__run_nodes(w, r);
     int a;
+    if (!mpm__may_touch(w, r)) return 0;
     for (a = 0; a < mpm__reach(w); a++) {
         const int32_t touch = w->node[slot[a]].touch;
         const mpm_real *cut = touch < 0 ? NULL : w->touch[touch].cut;
@@ -3302,45 +3629,46 @@ static inline void mpm__account_cuts(mpm_world *w)
 
 static inline mpm_status mpm__sweep_stress(mpm_world *w, int move)
 {
-    int32_t b, from = 0, to = 0;
-    mpm_status s;
-    for (b = 0; b < w->bodies; b++, from = to) {
-        while (to < w->runs && w->run[to].body == b) to++;
-#define MPM__CALL(k, ky, hoop) s = mpm__stress_body(w, b, from, to, k, ky, hoop, move)
-        MPM__SPECIALISED(w, 1, MPM__CALL);
+    mpm_status s = MPM_OK;
+#define MPM__CALL(k, ky, hoop) \
+    s = s < 0 ? s : mpm__stress_body(w, body, w->run + from, w->run + to, k, ky, hoop, move)
+    MPM__EACH_BODY(w, 1, MPM__CALL);
 #undef MPM__CALL
-        if (s < 0) return s;
-    }
+    if (s < 0) return s;
     mpm__account_cuts(w);
     return MPM_OK;
 }
 
-/* x_p += dt sum N_I P_I / m_I of one run (A 3.32). */
-MPM_KERNEL void mpm__move_run(mpm_world *w, const mpm_run *r, int k, int ky)
+MPM_KERNEL void mpm__move_body(mpm_world *w, const mpm_run *r, const mpm_run *end, int k, int ky)
 {
-    mpm_real U[3][MPM_SUPPORT];
     mpm__weights s;
-    int32_t at;
+    int32_t first;
     int n;
-    mpm__gather_polynomial(w, r, k, ky, MPM__MOMENTUM, 1, U);
-    MPM__EACH_PIECE(r, at, n) {
-        mpm__weigh(w, r, at, n, k, ky, &s);
-        mpm__add_values(&s, k, ky, U, w->dt, w->points.x, at);
+    MPM__EACH_SPAN(r, end, first, n) {
+        mpm__weigh_span(w, r, first, n, k, ky, &s);
+        mpm__span_moves(w, r, &s, first, k, ky, 1);
     }
+}
+
+/* Moves the points of a run. */
+static inline void mpm__move_run(mpm_world *w, const mpm_run *r)
+{
+#define MPM__CALL(k, ky, hoop) mpm__move_body(w, r, r + 1, k, ky)
+    MPM__SPECIALISED(w, 0, MPM__CALL);
+#undef MPM__CALL
 }
 
 /* Moves the points of all runs, or of those that touch, and the time. */
 static inline void mpm__sweep_move(mpm_world *w, int all)
 {
-    const int k = w->support[0], ky = w->support[1];
     int32_t i;
     if (all) {
-#define MPM__CALL(k, ky, hoop) mpm__move_run(w, run, k, ky)
-        MPM__EACH_RUN(w, 0, MPM__CALL);
+#define MPM__CALL(k, ky, hoop) mpm__move_body(w, w->run + from, w->run + to, k, ky)
+        MPM__EACH_BODY(w, 0, MPM__CALL);
 #undef MPM__CALL
     } else {
         for (i = 0; i < w->runs && w->touches > 0; i++)
-            if (mpm__run_touches(w, &w->run[i])) mpm__move_run(w, &w->run[i], k, ky);
+            if (mpm__run_touches(w, &w->run[i])) mpm__move_run(w, &w->run[i]);
     }
     w->time += w->dt;
     w->dt_last = w->dt;
@@ -3363,8 +3691,11 @@ MPM_API mpm_status mpm_stress_and_move(mpm_world *w)
 /* Forgets all slots: the table of nodes is empty again. */
 static inline void mpm__grid_reset(mpm_world *w)
 {
+    const size_t all = mpm__grid_nodes(w);
     int32_t s;
-    for (s = 0; s < w->nodes; s++) w->head[w->node[s].index] = -1;
+    if (all / 16 < (size_t)w->nodes) memset(w->head, 255, all * sizeof *w->head); /* all bits: -1 */
+    else
+        for (s = 0; s < w->nodes; s++) w->head[w->node[s].index] = -1;
     w->nodes = w->runs = w->pairs = w->pairs_possible = w->touches = 0;
 }
 
@@ -3411,36 +3742,43 @@ static inline int32_t mpm__key_at_side(mpm_world *w, int32_t i)
     return (at[2] * w->nodes_per_axis[1] + at[1]) * w->nodes_per_axis[0] + at[0];
 }
 
-/* The base node of every active point of a body, or -1 outside the grid. A point's base is the
+/* The base node of every active point of a body, or -1 outside the grid; returns 1 if any is. A point's base is the
    lowest node it touches: of its cell with linear functions, of the nearest node's lower neighbour with GIMP and
    quadratic splines, the one below its cell with cubic ones. */
-static inline void mpm__keys(mpm_world *w, const mpm_body *b)
+static inline int mpm__keys(mpm_world *w, const mpm_body *b)
 {
     const mpm_desc *d = &w->desc;
     const mpm_real *x = w->points.x[0], *y = w->points.x[1], *z = w->points.x[2];
     const mpm_real inv = 1 / d->cell, shift = w->support[0] == 3 ? MPM_R(0.5) : 0;
-    const mpm_real hx = (mpm_real)d->cells[0], hz = (mpm_real)d->cells[2];
+    const mpm_real hx = (mpm_real)d->cells[0], hy = (mpm_real)d->cells[1], hz = (mpm_real)d->cells[2];
     const mpm_real ox = d->origin[0], oy = d->origin[1], oz = d->origin[2];
     const int32_t nx = w->nodes_per_axis[0], ny = w->nodes_per_axis[1];
+    const int32_t from = b->first, to = from + b->active;
     const int flat = mpm__flat(d);
-    const mpm_real hy = (mpm_real)d->cells[1];
-    int32_t i, *key = w->key;
-    for (i = b->first; i < b->first + b->active; i++) {
-        mpm_real tx = (x[i] - ox) * inv, ty = flat ? 0 : (y[i] - oy) * inv, tz = (z[i] - oz) * inv;
-        int inside = (tx >= 0) & (tx < hx) & (ty >= 0) & (ty < hy) & (tz >= 0) & (tz < hz);
+    int32_t i, *key = w->key, away = 0, lost = 0;
+    for (i = from; i < to; i++) {
+        const mpm_real tx = (x[i] - ox) * inv, ty = flat ? 0 : (y[i] - oy) * inv, tz = (z[i] - oz) * inv;
         /* truncation of t gives the cell's lower node, of t + 1/2 the nearest node; its lower neighbour is, with
            the ghost layer counted, of the same number */
-        int32_t ix = (int32_t)(inside ? tx + shift : 0), iz = (int32_t)(inside ? tz + shift : 0);
-        int32_t iy = flat ? 0 : (int32_t)(inside ? ty + shift : 0);
-        key[i] = inside ? (iz * ny + iy) * nx + ix : mpm__key_at_side(w, i);
+        const int32_t ix = (int32_t)((tx >= 0 ? (tx < hx ? tx : -2) : -2) + shift);
+        const int32_t iy = flat ? 0 : (int32_t)((ty >= 0 ? (ty < hy ? ty : -2) : -2) + shift);
+        const int32_t iz = (int32_t)((tz >= 0 ? (tz < hz ? tz : -2) : -2) + shift);
+        const int32_t out = (ix | iy | iz) < 0 ? -1 : 0;
+        key[i] = out | ((iz * ny + iy) * nx + ix);
+        away |= out;
     }
+    for (i = from; i < to && away; i++) {
+        if (key[i] < 0) key[i] = mpm__key_at_side(w, i);
+        lost |= key[i] < 0;
+    }
+    return lost;
 }
 
 /* Takes points with key -1 out of the active range, in order. A position that is not a number is
    a failure, found before anything is moved. */
 static inline mpm_status mpm__retire(mpm_world *w, mpm_body *b)
 {
-    mpm_points *p = &w->points;
+    const mpm_points *p = &w->points;
     int32_t i;
     int a;
     for (i = b->first; i < b->first + b->active; i++)
@@ -3456,50 +3794,82 @@ static inline mpm_status mpm__retire(mpm_world *w, mpm_body *b)
     return MPM_OK;
 }
 
-/* Counting sort of a body's points by base node. The table of nodes, unused between steps, holds
-   the counts; stable, hence deterministic. */
-static inline void mpm__sort(mpm_world *w, const mpm_body *b)
+enum { MPM__SORTED = 64 }; /* points that are put in order together */
+
+/* How many of the points [i, to) that is, but none where they stay as they are: order[i] is -1 there. */
+static inline int32_t mpm__moved(const int32_t *order, int32_t *i, int32_t to)
 {
-    mpm_points *p = &w->points;
-    int32_t i, lo, hi, sum = b->first, *head = w->head, *order = w->order, *spare = (int32_t *)w->scratch;
-    const int32_t from = b->first, to = b->first + b->active;
-    int f;
-    if (from == to) return;
-    lo = hi = w->key[from];
+    while (*i < to && order[*i] < 0) *i += MPM__SORTED;
+    return *i >= to ? 0 : to - *i < MPM__SORTED ? to - *i : MPM__SORTED;
+}
+
+/* Puts entries of `size` bytes of points [from, to) in order, by way of spare. */
+MPM_KERNEL void mpm__reorder(void *array, void *spare, const int32_t *order, int32_t from, int32_t to, size_t size)
+{
+    char *a = (char *)array, *b = (char *)spare;
+    int32_t i, j, n;
+    for (i = from; (n = mpm__moved(order, &i, to)) > 0; i += n)
+        for (j = i; j < i + n; j++) memcpy(b + (size_t)j * size, a + (size_t)order[j] * size, size);
+    for (i = from; (n = mpm__moved(order, &i, to)) > 0; i += n)
+        memcpy(a + (size_t)i * size, b + (size_t)i * size, (size_t)n * size);
+}
+
+/* Notes in `order` which points [from, to) need not be put in order. */
+static inline void mpm__mark_sorted(int32_t *order, int32_t from, int32_t to)
+{
+    int32_t i, j;
+    for (i = from; i < to; i += MPM__SORTED) {
+        const int32_t end = to - i < MPM__SORTED ? to : i + MPM__SORTED;
+        int32_t moved = 0;
+        for (j = i; j < end; j++) moved |= order[j] ^ j;
+        if (!moved) order[i] = -1;
+    }
+}
+
+/* Counting sort of a body's points by base node, to w->order. The table of nodes, unused between steps, holds
+   the counts; stable, hence deterministic. */
+static inline void mpm__sorted_order(mpm_world *w, int32_t from, int32_t to)
+{
+    const int32_t *key = w->key;
+    int32_t i, lo = key[from], hi = lo, sum = from, *head = w->head, *order = w->order;
     for (i = from; i < to; i++) {
-        if (w->key[i] < lo) lo = w->key[i];
-        if (w->key[i] > hi) hi = w->key[i];
+        lo = key[i] < lo ? key[i] : lo;
+        hi = key[i] > hi ? key[i] : hi;
     }
     for (i = lo; i <= hi; i++) head[i] = 0;
-    for (i = from; i < to; i++) head[w->key[i]]++;
+    for (i = from; i < to; i++) head[key[i]]++;
     for (i = lo; i <= hi; i++) {
-        int32_t n = head[i];
+        const int32_t n = head[i];
         head[i] = sum;
         sum += n;
     }
-    for (i = from; i < to; i++) order[head[w->key[i]]++] = i;
+    for (i = from; i < to; i++) order[head[key[i]]++] = i;
     for (i = lo; i <= hi; i++) head[i] = -1;
-    for (f = 0; f < w->fields; f++) {
-        mpm_real *a = w->field + (size_t)f * w->stride;
-        for (i = from; i < to; i++) w->scratch[i] = a[order[i]];
-        memcpy(a + from, w->scratch + from, (size_t)(to - from) * sizeof *a);
-    }
-    for (i = from; i < to; i++) spare[i] = p->id[order[i]];
-    memcpy(p->id + from, spare + from, (size_t)(to - from) * sizeof *spare);
-    for (i = from; i < to; i++) spare[i] = w->key[order[i]];
-    memcpy(w->key + from, spare + from, (size_t)(to - from) * sizeof *spare);
-    for (i = from; i < to; i++) spare[i] = p->flags[order[i]];
-    for (i = from; i < to; i++) p->flags[i] = (uint8_t)spare[i];
+}
+
+static inline void mpm__sort(mpm_world *w, const mpm_body *b)
+{
+    const int32_t from = b->first, to = from + b->active;
+    int f;
+    if (from == to) return;
+    mpm__sorted_order(w, from, to);
+    mpm__mark_sorted(w->order, from, to);
+    for (f = 0; f < w->fields; f++)
+        mpm__reorder(w->field + (size_t)f * w->stride, w->scratch, w->order, from, to, sizeof *w->field);
+    mpm__reorder(w->points.id, w->scratch, w->order, from, to, sizeof *w->points.id);
+    mpm__reorder(w->key, w->scratch, w->order, from, to, sizeof *w->key);
+    mpm__reorder(w->points.flags, w->scratch, w->order, from, to, sizeof *w->points.flags);
 }
 
 /* Runs there would be with the points as they lie. */
 static inline int32_t mpm__count_runs(const mpm_world *w)
 {
+    const int32_t *key = w->key;
     int32_t b, i, n = 0;
     for (b = 0; b < w->bodies; b++) {
         const int32_t from = w->body[b].first, to = from + w->body[b].active;
         if (to > from) n++;
-        for (i = from + 1; i < to; i++) n += w->key[i] != w->key[i - 1];
+        for (i = from + 1; i < to; i++) n += key[i] != key[i - 1];
     }
     return n;
 }
@@ -3533,20 +3903,30 @@ static inline int32_t mpm__slot(mpm_world *w, int32_t body, const int32_t *at)
     return s;
 }
 
+/* 1 if run r lies one node further along x than the one before it in the list: they share all but the ends of lines. */
+static inline int mpm__follows(const mpm_world *w, const mpm_run *r)
+{
+    const mpm_run *before = r - 1;
+    return r > w->run && before->body == r->body && before->base[0] + 1 == r->base[0] &&
+           before->base[1] == r->base[1] && before->base[2] == r->base[2];
+}
+
 /* Gives a run its slots. */
 static inline int mpm__run_slots(mpm_world *w, mpm_run *r, int32_t *slot)
 {
-    const int *n = w->support;
+    const int *n = w->support, shared = mpm__follows(w, r) ? n[0] - 1 : 0, reach = mpm__reach(w);
     int32_t at[3], mirrored[3][4];
     int i[3], d;
     for (d = 0; d < 3; d++)
         for (i[0] = 0; i[0] < n[d]; i[0]++) mirrored[d][i[0]] = mpm__image_node(w, d, r->base[d] + i[0], &r->flags);
     for (i[2] = 0; i[2] < n[2]; i[2]++)
-        for (i[1] = 0; i[1] < n[1]; i[1]++)
-            for (i[0] = 0; i[0] < n[0]; i[0]++) {
+        for (i[1] = 0; i[1] < n[1]; i[1]++, slot += n[0]) {
+            for (i[0] = 0; i[0] < shared; i[0]++) slot[i[0]] = slot[i[0] + 1 - reach];
+            for (; i[0] < n[0]; i[0]++) {
                 for (d = 0; d < 3; d++) at[d] = mirrored[d][i[d]];
-                if ((*slot++ = mpm__slot(w, r->body, at)) < 0) return 0;
+                if ((slot[i[0]] = mpm__slot(w, r->body, at)) < 0) return 0;
             }
+        }
     return 1;
 }
 
@@ -3595,8 +3975,7 @@ static inline mpm_status mpm__locate(mpm_world *w)
     mpm_status s;
     mpm__grid_reset(w);
     for (b = 0; b < w->bodies; b++) {
-        mpm__keys(w, &w->body[b]);
-        if ((s = mpm__retire(w, &w->body[b])) != MPM_OK) return s;
+        if (mpm__keys(w, &w->body[b]) && (s = mpm__retire(w, &w->body[b])) != MPM_OK) return s;
     }
     mpm__keep_order(w);
     while (mpm__list_runs(w) != MPM_OK) {

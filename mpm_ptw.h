@@ -183,13 +183,13 @@ MPM_KERNEL mpm_real mpm__exp_parts(mpm_real x, mpm_real *scale)
     const mpm_real n = mpm__real_of(turned) - MPM__ROUNDER;
     const mpm_real r = (x - n * MPM__LN2_HIGH) - n * MPM__LN2_LOW, q = r * r;
 #ifdef MPM_FLOAT
-    const mpm_real even = q * (MPM_R(1.) / 2 + q * (MPM_R(1.) / 24 + q / 720));
-    const mpm_real odd = 1 + q * (MPM_R(1.) / 6 + q * (MPM_R(1.) / 120 + q / 5040));
+    const mpm_real even = q * (MPM_R(1.) / 2 + q * (MPM_R(1.) / 24 + q * (MPM_R(1.) / 720)));
+    const mpm_real odd = 1 + q * (MPM_R(1.) / 6 + q * (MPM_R(1.) / 120 + q * (MPM_R(1.) / 5040)));
 #else
     const mpm_real even = q * (1. / 2 + q * (1. / 24 + q * (1. / 720 + q * (1. / 40320 + q * (1. / 3628800 +
-                          q / 479001600)))));
+                          q * (1. / 479001600))))));
     const mpm_real odd = 1 + q * (1. / 6 + q * (1. / 120 + q * (1. / 5040 + q * (1. / 362880 + q * (1. / 39916800 +
-                         q / 6227020800.)))));
+                         q * (1. / 6227020800.))))));
 #endif
     *scale = mpm__real_of((turned + MPM__BIAS) << MPM__MANTISSA);
     return *scale * (even + r * odd);
@@ -226,7 +226,7 @@ MPM_KERNEL mpm_real mpm_lane_log(mpm_real x)
     const mpm__bits b = mpm__bits_of(x < MPM__LEAST_NORMAL ? MPM__LEAST_NORMAL : x);
     const mpm__bits biased = (b - MPM__ROOT_HALF + one) >> MPM__MANTISSA; /* n + BIAS */
     const mpm_real ones = mpm__real_of((mpm__bits)(MPM__MANTISSA + MPM__BIAS) << MPM__MANTISSA); /* 2^MANTISSA */
-    const mpm_real n = mpm__real_of(mpm__bits_of(ones) | biased) - ones - MPM__BIAS;
+    const mpm_real n = mpm__real_of(mpm__bits_of(ones) | biased) - ones - (mpm_real)MPM__BIAS;
     const mpm_real f = mpm__real_of(b - (biased << MPM__MANTISSA) + one) - 1;
     const mpm_real s = f / (2 + f), q = s * s, t = q * q, half = f * f / 2;
 #ifdef MPM_FLOAT
@@ -601,6 +601,7 @@ enum { MPM__PTW_LANES = MPM_BLOCK < 8 ? 8 : MPM_BLOCK < 64 ? MPM_BLOCK : 64 };
     X(hat)          /* T/T_m */                                                                  \
     X(log_eta)      /* ln(rho/rho0) */                                                           \
     X(rate_scale)   /* r = rate rate_scale eta^(1/6), from A 2.8 */                              \
+    X(soft)         /* JC: 1 - T*^m */                                                           \
     X(mises)        /* trial von Mises stress */                                                 \
     X(least)        /* the smallest increment that counts */                                     \
     X(d)            /* the increment: next to be tried, then the answer */                       \
@@ -698,6 +699,17 @@ static inline void mpm__ptw_cold(const mpm_material *m, mpm__ptw_shared *h)
     h->cold *= 1 - 64 * MPM_EPSILON;
 }
 
+/* The share of Johnson and Cook's strength that heat leaves, 1 - T*^m, T* = (T - T0)/(T_m - T0). */
+static inline void mpm__ptw_soften_jc(const mpm_material *m, mpm__ptw_group *g)
+{
+    const mpm_jc c = m->jc; /* by value: known not to be what the loop writes */
+    int i;
+    for (i = 0; i < g->count; i++) {
+        const mpm_real T_star = (g->temperature[i] - c.temperature) / (g->melt[i] - c.temperature);
+        g->soft[i] = T_star > 0 ? 1 - mpm_lane_pow(T_star, c.m) : 1;
+    }
+}
+
 /* What the laws need of strain, temperature and density, that does not change while an increment is sought. */
 static inline void mpm__ptw_prepare(const mpm_material *m, const mpm__ptw_shared *h, mpm__ptw_group *g)
 {
@@ -711,6 +723,7 @@ static inline void mpm__ptw_prepare(const mpm_material *m, const mpm__ptw_shared
         for (i = 0; i < g->count; i++) g->melt[i] = h->melt;
     for (i = 0; i < g->count; i++) g->hat[i] = g->temperature[i] / g->melt[i];
     for (i = 0; i < g->count; i++) g->rate_scale[i] = 1 / (h->rate_factor * mpm_sqrt(g->shear[i]));
+    if (m->strength == MPM_STRENGTH_JC) mpm__ptw_soften_jc(m, g);
 }
 
 /* ---- Preston-Tonks-Wallace ------------------------------------------------------------------- */
@@ -955,7 +968,7 @@ static inline void mpm__ptw_bound_linear(const mpm_material *m, const mpm__ptw_s
     for (i = 0; i < MPM__PTW_KNOTS; i++) b->stress[i] = m->linear_hardening >= 0 ? m->linear_yield : 0;
 }
 
-/* sigma = (a + b eps^n) (1 + c ln(rate/rate0)) (1 - T*^m), T* = (T - T0)/(T_m - T0) [JC]. With n < 1 its slope b n
+/* sigma = (a + b eps^n) (1 + c ln(rate/rate0)) (1 - T*^m) [JC]. With n < 1 its slope b n
    eps^(n-1) starts at infinity; at zero strain (only) it is therefore taken at the elastic strain of first yield,
    a/(3 mu). */
 static inline void mpm__ptw_flow_jc(const mpm_material *m, mpm__ptw_group *g)
@@ -963,9 +976,7 @@ static inline void mpm__ptw_flow_jc(const mpm_material *m, mpm__ptw_group *g)
     const mpm_jc c = m->jc; /* by value: known not to be what the loop writes */
     int i;
     for (i = 0; i < g->count; i++) {
-        const mpm_real T_star = (g->temperature[i] - c.temperature) / (g->melt[i] - c.temperature);
-        const mpm_real soft = T_star > 0 ? 1 - mpm_lane_pow(T_star, c.m) : 1;
-        const mpm_real strain = g->plastic_strain[i], first = c.a / (3 * g->shear[i]);
+        const mpm_real soft = g->soft[i], strain = g->plastic_strain[i], first = c.a / (3 * g->shear[i]);
         const mpm_real at = strain > 0 ? strain : first, raised = c.b * mpm_lane_pow(at, c.n);
         const mpm_real log_rate = mpm_lane_log(g->plastic_rate[i] / c.rate), above = log_rate > 0 ? 1 : 0;
         const mpm_real fast = 1 + c.c * (log_rate > 0 ? log_rate : 0), hard = c.a + (strain > 0 ? raised : 0);
@@ -1703,7 +1714,7 @@ static inline mpm_status mpm__ptw_blame(const mpm_material *m, const mpm_block *
 static inline mpm_status mpm__ptw_screen(const mpm_material *m, const mpm_block *b,
                                          const mpm__ptw_lanes *a)
 {
-    mpm_real limit = mpm__ptw_infinity(), half = 0, rho0 = m->density, sum = 0;
+    mpm_real limit = mpm__ptw_infinity(), half = 0, rho0 = m->density;
     int i, n = a->count, bad = 0;
     if (m->eos == MPM_EOS_MIE_GRUENEISEN) {
         half = m->gruneisen / 2;
@@ -1714,12 +1725,12 @@ static inline mpm_status mpm__ptw_screen(const mpm_material *m, const mpm_block 
         int k = a->first + i;
         mpm_real volume = a->volume[i], rho = b->density[k], T = b->temperature[k];
         mpm_real strain = b->plastic_strain[k], old = rho * (1 + volume);
-        sum += (a->mises2[i] + a->mean[i] + b->energy[k] + b->plastic_rate[k] + b->plastic_work[k] + T +
-                strain + volume) * 0;
-        bad |= !(rho > 0 && rho < limit && T >= 0 && strain >= 0 && volume > -1 &&
-                 old + half * rho0 * volume > 0);
+        mpm_real none = (a->mises2[i] + a->mean[i] + b->energy[k] + b->plastic_rate[k] + b->plastic_work[k] + T +
+                         strain + volume) * 0;
+        bad |= !((none == 0) & (rho > 0) & (rho < limit) & (T >= 0) & (strain >= 0) & (volume > -1) &
+                 (old + half * rho0 * volume > 0));
     }
-    if (!bad && sum == 0) return MPM_OK;
+    if (!bad) return MPM_OK;
     for (i = a->first; i < a->first + n; i++) {
         mpm_status status = mpm__ptw_diagnose(m, b, i);
         if (status < 0) return status;

@@ -117,11 +117,11 @@ for cc in gcc clang; do
         check "... NaN is noticed" "$dir/nan"
     done
 done
-# The same small impact by every compiler and level: equal but for accumulated round-off.
+# The same small impact by every compiler and level, with and without vector types: equal but for accumulated round-off.
 first=
 for cc in gcc clang; do
     command -v $cc >/dev/null || continue
-    for level in -O0 -O2; do
+    for level in -O0 -O2 -DMPM_NO_WIDE; do
         rm -f "$dir/agree"
         check "an impact by $cc $level builds" \
             $cc -std=c99 -I. -Itests $level -ffp-contract=off tests/compile/agree.c -o "$dir/agree" -lm

@@ -47,12 +47,6 @@ static inline int impact_rows(const impact *s, page_row *row)
     return 4 + rest;
 }
 
-/* Whether the particle stays, as the end table says it. */
-static inline int impact_stays(const impact *s, const impact_result *r)
-{
-    return fabs(r->relative) <= 5 && (s->world.held > 0 || r->meeting.bonded > 0);
-}
-
 /* "stays", "rebounds", or that the run ended too early to tell. */
 static inline const char *impact_verdict(const impact *s, const impact_result *r)
 {

@@ -609,7 +609,7 @@ static inline void page_picture(FILE *f, const page_desc *d, const char *folder)
     FILE *from = d->picture ? fopen(file_in(folder, d->picture, path, sizeof path), "rb") : NULL;
     int byte;
     if (!from) return;
-    fputs("<img alt=\"", f);
+    fputs("<p class=\"note\">This browser runs no scripts: here is the last picture.</p>\n<img alt=\"", f);
     page_text(f, d->title);
     fputs("\" src=\"data:image/png;base64,", f);
     while ((byte = fgetc(from)) != EOF) page_byte(&c, (unsigned)byte);

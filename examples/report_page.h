@@ -60,7 +60,6 @@ static inline const char *const *page_html(void)
         "go to the first and the last.</p>\n",
         "</section>\n",
         "<noscript>\n",
-        "<p class=\"note\">This browser runs no scripts: the last frame as a picture.</p>\n",
         "{{picture}}\n",
         "</noscript>\n",
         "<section id=\"curves\" aria-labelledby=\"curves-title\" hidden>\n",

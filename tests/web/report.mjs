@@ -112,6 +112,11 @@ async function fields(page, kind) {
   }
   equal(kind + ": each field has pixels of its own", seen.size, names.length);
   equal(kind + ": ... and a colour bar of its own", bars.size, names.length);
+  await page.evaluate(`(() => { const c = document.getElementById("section"), r = c.getBoundingClientRect();
+    c.dispatchEvent(new PointerEvent("pointermove", { clientX: r.left + r.width / 2,
+      clientY: r.bottom - 0.2 * r.height })); })()`);
+  check(kind + ": a point tells its values", /plastic strain .*temperature .* K/.test(await text(page, "probe")),
+    await text(page, "probe"));
   check(kind + ": the picture says what it shows", (await page.evaluate(
     "document.getElementById('section').getAttribute('aria-label')")).length > 30);
 }

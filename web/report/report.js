@@ -635,7 +635,7 @@ function svg(name, attributes, parent) {
   return parent.appendChild(node);
 }
 
-const box = { w: 340, h: 200, left: 50, right: 14, top: 10, bottom: 38 };
+const box = { w: 340, h: 200, left: 50, right: 14, top: 10, bottom: 42 };
 
 /* Axes of a panel; returns how numbers become places. */
 function axes(root, p, size) {
@@ -647,7 +647,7 @@ function axes(root, p, size) {
       words(Number(t.toPrecision(6)));
   }
   for (const t of ticks(p.x0, p.x1, 5))
-    svg("text", { x: x(t), y: size.h - size.bottom + 15, "text-anchor": "middle" }, root).textContent =
+    svg("text", { x: x(t), y: size.h - size.bottom + 19, "text-anchor": "middle" }, root).textContent =
       words(Number(t.toPrecision(6)));
   if (p.y0 < 0 && p.y1 > 0)
     svg("line", { x1: size.left, x2: size.w - size.right, y1: y(0), y2: y(0), class: "axis" }, root);

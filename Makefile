@@ -224,7 +224,7 @@ gallery: build/impact build/taylor build/spray build/two_particles build/many_pa
 report-page: ## web/report as the C header examples/report_page.h, which is committed
 	sh web/report/embed.sh >examples/report_page.h.part && mv examples/report_page.h.part examples/report_page.h
 
-web-test: build/impact build/critical_velocity ## report.html in headless Chromium, with pictures of it in build/web/pictures
+web-test: build/impact build/critical_velocity ## report.html in headless Chromium, with pictures of it in build/report-web
 	@sh tests/web/report.sh
 
 figures: ## the figures of docs/method.md

@@ -1,8 +1,9 @@
 #!/bin/sh
-# report.html in headless Chromium, driven by node: `make web-test`. Runs of each kind into build/web, pictures of their
-# pages into build/web/pictures. Skipped, with the reason, where one of the two is missing. Run from the top folder.
+# report.html in headless Chromium, driven by node: `make web-test`. Runs of each kind into build/report-web, pictures of
+# their pages into build/report-web/pictures. Skipped, with the reason, where Chromium or node is missing. Run from the
+# top folder.
 set -u
-dir=build/web
+dir=build/report-web
 browser=${CHROMIUM:-$(command -v chromium || command -v chromium-browser || command -v google-chrome)}
 skip() {
     echo "skip - report.html in a browser: $1"

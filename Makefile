@@ -219,6 +219,14 @@ gallery: build/impact build/taylor build/spray build/two_particles build/many_pa
 	sh -eux build/gallery/commands.sh
 	@sh tests/79_gallery.sh >build/gallery/checks || { grep '^not ok' build/gallery/checks; exit 1; }
 
+.PHONY: report-page web-test
+# The page of report.h: changes of web/report get into the programs by this.
+report-page: ## web/report as the C header examples/report_page.h, which is committed
+	sh web/report/embed.sh >examples/report_page.h.part && mv examples/report_page.h.part examples/report_page.h
+
+web-test: build/impact build/critical_velocity ## report.html in headless Chromium, with pictures of it in build/report-web
+	@sh tests/web/report.sh
+
 figures: ## the figures of docs/method.md
 	@mkdir -p build
 	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) docs/figures.c -o build/figures $(LDFLAGS) -lm

@@ -9,6 +9,7 @@
 #define MPM_IMPLEMENTATION
 #include "impact_history.h"
 #include "impact_options.h"
+#include "impact_report.h"
 #include "restart.h"
 
 /* "al", or "al on cu". */
@@ -63,11 +64,13 @@ static int describe_picture(const impact *s, const impact_case *c, const output 
     return output_outline(o, p, &s->world, &s->surfaces);
 }
 
-static int write_frame(const impact *s, const impact_case *c, output *o)
+static int write_frame(const impact *s, const impact_case *c, const page *sheet, output *o)
 {
     output_picture p;
-    const int ok = describe_picture(s, c, o, &p) && output_surfaces(o, &s->world, &s->surfaces) &&
-                   output_frame(o, &s->world, NULL, 0, &p);
+    int ok;
+    if (!page_frame(sheet, o, &s->world, &s->surfaces)) return 0;
+    ok = describe_picture(s, c, o, &p) && output_surfaces(o, &s->world, &s->surfaces) &&
+         output_frame(o, &s->world, NULL, 0, &p);
     output_picture_free(&p);
     return ok;
 }
@@ -81,7 +84,7 @@ static int write_pictures(const impact *s, const impact_case *c, const impact_re
     int ok = describe_picture(s, c, o, &p);
     write_title(s, c, title, sizeof title);
     if (s->world.steps >= s->steps)
-        snprintf(p.title, sizeof p.title, "%.140s: %s", title, impact_stays(s, r) ? "stays" : "rebounds");
+        snprintf(p.title, sizeof p.title, "%.130s: %s", title, impact_verdict(s, r));
     ok = ok && output_png(o, &p, "impact.png") && output_film(o, title) &&
          impact_history_png(past, o->folder, p.title);
     output_picture_free(&p);
@@ -174,7 +177,7 @@ static void print_table(const impact *s, const impact_case *c, const impact_resu
     const double start = s->start.kinetic;
     char name[64];
     printf("\n  %s, %g um at %g m/s after %.4g ns: %s\n\n", metals(s, name, sizeof name), c->diameter, c->velocity,
-           (double)w->time * 1e3, impact_stays(s, r) ? "stays" : "rebounds");
+           (double)w->time * 1e3, impact_verdict(s, r));
     printf("  rebound velocity, mean          %10.3f m/s\n", r->rebound.mean);
     printf("  rebound velocity, |v| <= 60 m/s %10.3f m/s  (%.4f of the impact velocity)\n", r->rebound.filtered,
            r->restitution);
@@ -222,14 +225,14 @@ static void print_table(const impact *s, const impact_case *c, const impact_resu
 }
 
 /* Time integration: one call per phase. Returns 1; 0 after a message; -1 when stopped before, with a checkpoint. */
-static int run(impact *s, const impact_case *c, output *o, restart *again)
+static int run(impact *s, const impact_case *c, const page *sheet, output *o, restart *again)
 {
     mpm_world *w = &s->world;
     int status = 1;
     output_start(o, w);
     for (;;) {
         if (history_due(again->past, w->steps, s->steps)) impact_history_sample(again->past, s);
-        if (output_due(o, w, s->steps) && !write_frame(s, c, o)) return 0;
+        if (output_due(o, w, s->steps) && !write_frame(s, c, sheet, o)) return 0;
         if (w->steps >= s->steps) break;
         if ((status = restart_goes_on(again)) <= 0) break;
 
@@ -260,15 +263,19 @@ static int run(impact *s, const impact_case *c, output *o, restart *again)
 }
 
 /* Everything that is written at the end, or where the run is stopped. */
-static int finish(const impact *s, const impact_case *c, output *o, const history *past, const option *options,
-                  int n)
+static int finish(const impact *s, const impact_case *c, const page *sheet, output *o, const history *past,
+                  page_desc d)
 {
     const impact_result r = impact_measure(s, c);
-    if (!write_summary(s, &r, o, options, n) || !history_csv(past, o->folder)) return 0;
+    char title[160];
+    if (!write_summary(s, &r, o, d.option, d.options) || !history_csv(past, o->folder)) return 0;
     if (o->frames > 0 && !write_pictures(s, c, &r, o, past)) return 0;
+    write_title(s, c, title, sizeof title);
+    d.title = title;
+    if (sheet->on && !impact_page(s, c, &r, o, past, d)) return 0;
     if (o->quiet) return 1;
     print_table(s, c, &r, o->cpu);
-    printf("\n  %s/summary.json, history.csv%s\n", o->folder,
+    printf("\n  %s/%ssummary.json, history.csv%s\n", o->folder, sheet->on ? "report.html, " : "",
            o->frames > 1   ? ", history.png, impact.png, film.png, impact.pvd"
            : o->frames > 0 ? ", history.png, impact.png, impact.pvd" : "");
     return 1;
@@ -298,30 +305,36 @@ static int carry_out(int argc, char **argv)
     option options[IMPACT_OPTIONS];
     int n = impact_options(&c, options);
     const char *about = "A metal particle hits a metal plate: material point method with bonding.\n"
-                        "Writes summary.json, history.csv, history.png, impact.png, film.png, impact.pvd (ParaView)\n"
-                        "and frames into the output folder.";
+                        "Writes report.html, summary.json, history.csv, history.png, impact.png, film.png, impact.pvd\n"
+                        "(ParaView) and frames into the output folder.";
     char message[300];
     restart again;
     history past;
+    page sheet;
     impact s;
     int of_case = n, of_run, parsed, status;
     memset(&again, 0, sizeof again);
     output_options(&o, options, &n);
     output_picture_options(&o, options, &n);
+    page_options(&sheet, options, &n);
     of_run = n;
     restart_options(&again, options, &n);
     parsed = options_parse(argc, argv, about, options, n);
     if (parsed) return parsed < 0 ? 1 : 0;
     impact_complete(&c);
     if (!output_check(&o, message, sizeof message) || !restart_check(&again, message, sizeof message) ||
-        !shows(&c, &o, message, sizeof message) || !impact_begin(&s, &c, message, sizeof message))
+        !page_check(&sheet, message, sizeof message) || !shows(&c, &o, message, sizeof message) ||
+        !impact_begin(&s, &c, message, sizeof message))
         return !complain(message);
     impact_history_begin(&past, s.steps);
     restart_describe(&again, &s.world, &s.surfaces, &o, &s.start, &past, s.dt, options, of_case);
-    status = restart_begin(&again, s.steps) ? run(&s, &c, &o, &again) : 0;
-    if (status != 0 && !finish(&s, &c, &o, &past, options, of_run)) status = 0;
+    status = restart_begin(&again, s.steps) && page_begin(&sheet, &o, c.spacing) ? run(&s, &c, &sheet, &o, &again) : 0;
+    if (status != 0 && !finish(&s, &c, &sheet, &o, &past, page_of(options, of_run, argc, argv))) status = 0;
     if (status < 0) print_again(argc, argv, "--resume", (long long)s.world.steps, (long long)s.steps);
-    if (status > 0) restart_end(&again);
+    if (status > 0) {
+        restart_end(&again);
+        page_end(&sheet, o.folder);
+    }
     impact_end(&s);
     return status > 0 ? 0 : status < 0 ? STOPPED : 1;
 }

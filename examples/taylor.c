@@ -9,6 +9,7 @@
    The loop in run() is the method, one call per phase. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "taylor_history.h"
+#include "report.h"
 #include "restart.h"
 
 /* Colours: pressure to a tenth of what the first shock makes, which is gone at once; stress to twice what the metal
@@ -28,24 +29,31 @@ static output_range colors(const taylor *s, const taylor_case *c)
     return r;
 }
 
+/* "cu linear, 227 m/s" */
+static void write_title(const taylor_case *c, char *title, size_t n)
+{
+    snprintf(title, n, "%s %s, %g m/s", c->material, c->model, c->velocity);
+}
+
 /* The section through the axis, or the bar from outside. Returns 1, or 0 after a message. */
 static int describe_picture(const taylor *s, const taylor_case *c, const output *o, output_picture *p)
 {
     const output_range r = colors(s, c);
     if (!output_fields(o, &s->world, s->spacing, &r, p)) return 0;
     output_window(p, 2.6 * s->radius, -0.03 * s->length, 1.05 * s->length);
-    snprintf(p->title, sizeof p->title, "%s %s, %g m/s", c->material, c->model, c->velocity);
+    write_title(c, p->title, sizeof p->title);
     return 1;
 }
 
 /* With the places at which the points began. */
-static int write_frame(const taylor *s, const taylor_case *c, output *o)
+static int write_frame(const taylor *s, const taylor_case *c, const page *sheet, output *o)
 {
     const mpm_world *w = &s->world;
     mpm_io_field start[2];
     output_picture p;
     int k, ok;
     for (k = 0; k < 2; k++) start[k] = mpm_io_scalar(w->user_name[k], w->points.user[k], 1);
+    if (!page_frame(sheet, o, w, NULL)) return 0;
     ok = describe_picture(s, c, o, &p) && output_frame(o, w, start, 2, &p);
     output_picture_free(&p);
     return ok;
@@ -58,13 +66,49 @@ static int write_pictures(const taylor *s, const taylor_case *c, const taylor_re
     output_picture p;
     char title[160];
     int ok = describe_picture(s, c, o, &p);
-    memcpy(title, p.title, sizeof title);
+    write_title(c, title, sizeof title);
     if (s->world.steps >= s->steps)
         snprintf(p.title, sizeof p.title, "%.90s: %.2f mm long, foot %.2f mm", title, r->length, r->radius);
     ok = ok && output_png(o, &p, "taylor.png") && output_film(o, title) &&
          taylor_history_png(past, o->folder, p.title);
     output_picture_free(&p);
     return ok;
+}
+
+/* report.html, behind the summary and the picture. */
+static int write_page(const taylor *s, const taylor_case *c, const taylor_result *r, const output *o,
+                      const history *past, page_desc d)
+{
+    static const page_row row[] = {
+        {"final_length_mm", "length", "mm", 3, 1, "height of the far end"},
+        {"final_radius_mm", "radius of the foot", "mm", 3, 1, "the largest of the side"},
+        {"eps_max", "largest plastic strain", "", 3, 1, "of any point"},
+        {"eps_mean", "mean plastic strain", "", 4, 0, "weighted by mass"},
+        {"temperature_max", "hottest point", "K", 0, 1, "no heat is conducted"},
+        {"v_mean_m_s", "mean velocity", "m/s", 2, 0, "away from the wall"},
+        {"energy_wall_fraction", "lost at the wall", "", 4, 0, "of the energy at the start"},
+        {"energy_unaccounted", "energy unaccounted", "", 5, 0, "of it, what no account of the ledger explains"},
+        {"momentum_error", "momentum error", "", PAGE_TINY, 0, "relative; round-off is some 1e-13"},
+        {"points", "points", "", 0, 0, "material points of the model"}, {"steps", "steps", "", 0, 0, "of time"}};
+    char verdict[120], lead[300], title[160];
+    write_title(c, title, sizeof title);
+    snprintf(verdict, sizeof verdict, "The bar is %.2f mm long, the radius of its foot %.2f mm.", r->length, r->radius);
+    snprintf(lead, sizeof lead, "A bar of %s, %g mm long and %g mm across, hits a rigid wall at %g m/s; this is after "
+             "%.4g " PAGE_MU "s.", c->material, c->length, c->diameter, c->velocity, (double)s->world.time * 1e3);
+    d.program = "taylor";
+    d.title = title;
+    d.verdict = verdict;
+    d.lead = lead;
+    d.good = 1;
+    d.row = row;
+    d.rows = (int)(sizeof row / sizeof *row);
+    d.past = past;
+    d.world = &s->world;
+    d.length = o->length;
+    d.time = o->time;
+    d.spacing = s->spacing;
+    d.picture = o->frames > 0 ? "taylor.png" : NULL;
+    return page_write(&d, o->folder);
 }
 
 static int write_profile(const taylor *s, const taylor_row *row, const output *o)
@@ -133,14 +177,14 @@ static void print_table(const taylor *s, const taylor_case *c, const taylor_resu
 }
 
 /* Time integration: one call per phase. Returns 1; 0 after a message; -1 when stopped before, with a checkpoint. */
-static int run(taylor *s, const taylor_case *c, output *o, restart *again)
+static int run(taylor *s, const taylor_case *c, const page *sheet, output *o, restart *again)
 {
     mpm_world *w = &s->world;
     int status = 1;
     output_start(o, w);
     for (;;) {
         if (history_due(again->past, w->steps, s->steps) && !taylor_history_sample(again->past, s, c)) return 0;
-        if (output_due(o, w, s->steps) && !write_frame(s, c, o)) return 0;
+        if (output_due(o, w, s->steps) && !write_frame(s, c, sheet, o)) return 0;
         if (w->steps >= s->steps) break;
         if ((status = restart_goes_on(again)) <= 0) break;
 
@@ -161,18 +205,19 @@ static int run(taylor *s, const taylor_case *c, output *o, restart *again)
 }
 
 /* Everything that is written at the end, or where the run is stopped. */
-static int finish(const taylor *s, const taylor_case *c, output *o, const history *past, const option *options,
-                  int n)
+static int finish(const taylor *s, const taylor_case *c, const page *sheet, output *o, const history *past,
+                  page_desc d)
 {
     taylor_row *row = (taylor_row *)malloc((size_t)taylor_rows(s) * sizeof *row);
     taylor_result r;
     int ok = row && taylor_measure(s, c, row, &r);
     if (!ok) complain("no memory for the profile");
-    ok = ok && write_summary(s, &r, o, options, n) && write_profile(s, row, o) && history_csv(past, o->folder);
+    ok = ok && write_summary(s, &r, o, d.option, d.options) && write_profile(s, row, o) && history_csv(past, o->folder);
     if (ok && o->frames > 0) ok = write_pictures(s, c, &r, o, past);
+    if (ok && sheet->on) ok = write_page(s, c, &r, o, past, d);
     if (ok && !o->quiet) {
         print_table(s, c, &r, o->cpu);
-        printf("\n  %s/summary.json, profile.csv, history.csv%s\n", o->folder,
+        printf("\n  %s/%ssummary.json, profile.csv, history.csv%s\n", o->folder, sheet->on ? "report.html, " : "",
                o->frames > 1   ? ", history.png, taylor.png, film.png, taylor.pvd"
                : o->frames > 0 ? ", history.png, taylor.png, taylor.pvd" : "");
     }
@@ -204,33 +249,39 @@ static int carry_out(int argc, char **argv)
 {
     taylor_case c = taylor_case_default();
     output o = output_of("build/taylor-out", "taylor", "mm", "us", 1e-3);
-    option options[24];
+    option options[28];
     restart again;
     history past;
+    page sheet;
     int n = options_of(&c, options), of_case = n, of_run, parsed, status, place;
     const char *about = "A metal cylinder hits a rigid wall end on: Taylor's test.\n"
-                        "Writes summary.json, profile.csv, history.csv, history.png, taylor.png, film.png, taylor.pvd\n"
-                        "(ParaView) and frames.";
+                        "Writes report.html, summary.json, profile.csv, history.csv, history.png, taylor.png,\n"
+                        "film.png, taylor.pvd (ParaView) and frames.";
     char message[300];
     taylor s;
     memset(&again, 0, sizeof again);
     output_options(&o, options, &n);
     output_picture_options(&o, options, &n);
+    page_options(&sheet, options, &n);
     of_run = n;
     restart_options(&again, options, &n);
     parsed = options_parse(argc, argv, about, options, n);
     if (parsed) return parsed < 0 ? 1 : 0;
     place = word_place(TAYLOR_GEOMETRIES, c.geometry); /* an unknown one is refused later */
     if (!output_check(&o, message, sizeof message) || !restart_check(&again, message, sizeof message) ||
+        !page_check(&sheet, message, sizeof message) ||
         !output_picture_check(&o, place == 1 ? MPM_3D : MPM_AXISYMMETRIC, message, sizeof message) ||
         !taylor_begin(&s, &c, message, sizeof message))
         return !complain(message);
     taylor_history_begin(&past, &s);
     restart_describe(&again, &s.world, NULL, &o, &s.start, &past, s.dt, options, of_case);
-    status = restart_begin(&again, s.steps) ? run(&s, &c, &o, &again) : 0;
-    if (status != 0 && !finish(&s, &c, &o, &past, options, of_run)) status = 0;
+    status = restart_begin(&again, s.steps) && page_begin(&sheet, &o, s.spacing) ? run(&s, &c, &sheet, &o, &again) : 0;
+    if (status != 0 && !finish(&s, &c, &sheet, &o, &past, page_of(options, of_run, argc, argv))) status = 0;
     if (status < 0) print_again(argc, argv, "--resume", (long long)s.world.steps, (long long)s.steps);
-    if (status > 0) restart_end(&again);
+    if (status > 0) {
+        restart_end(&again);
+        page_end(&sheet, o.folder);
+    }
     mpm_free(&s.world);
     return status > 0 ? 0 : status < 0 ? STOPPED : 1;
 }

@@ -7,6 +7,7 @@
    776, 761 m/s for 14, 18, 22, 26, 30 um. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "critical.h"
+#include "report.h"
 
 #define OFFSETS 32
 
@@ -17,6 +18,7 @@ typedef struct request {
     int64_t offsets;
     critical_rule rule;
     critical_range range;
+    int no_report;
     option o[IMPACT_OPTIONS];
     int n; /* options */
 } request;
@@ -129,6 +131,95 @@ static const char *velocity_text(double velocity, const critical_range *range, c
     return text;
 }
 
+/* Every run as a place of the page's curves: y[0] rebound velocities, y[1] bonded shares; a curve per offset. */
+typedef struct page_runs {
+    double x[CRITICAL_RUNS], y[2][CRITICAL_RUNS], bonds[CRITICAL_RUNS];
+    page_series series[2][OFFSETS];
+    char name[OFFSETS][40];
+    int count; /* offsets */
+} page_runs;
+
+static void page_runs_of(page_runs *t, const critical_curve *curve)
+{
+    int k, p;
+    memset(t, 0, sizeof *t);
+    for (k = 0; k < curve->runs; k++) {
+        const critical_run *r = &curve->run[k];
+        if (k == 0 || r->offset != curve->run[k - 1].offset)
+            snprintf(t->name[t->count++], sizeof t->name[0], "grid at %.3g " PAGE_MU "m", r->offset);
+        t->x[k] = r->velocity;
+        t->bonds[k] = r->bonds;
+        t->y[0][k] = r->value[STUDY_V_REST];
+        t->y[1][k] = r->value[STUDY_PBCP];
+        for (p = 0; p < 2; p++) {
+            page_series *s = &t->series[p][t->count - 1];
+            if (s->count++ > 0) continue;
+            s->name = t->name[t->count - 1];
+            s->x = t->x + k;
+            s->y = t->y[p] + k;
+            s->full = t->bonds + k;
+            s->line = 1;
+        }
+    }
+}
+
+static page_panel page_panel_of(const page_runs *t, int p, const critical_spread *s)
+{
+    page_panel panel;
+    panel.title = p ? "bonded share" : "rebound velocity";
+    panel.x = "impact velocity, m/s";
+    panel.y = p ? "%" : "m/s";
+    panel.band = "Filled: the run bonds. The band goes from the lowest to the highest critical velocity over the "
+                 "positions of the grid; the broken line is their median.";
+    panel.series = t->series[p];
+    panel.count = t->count;
+    panel.low = s->lowest;
+    panel.high = s->highest;
+    panel.at = s->median;
+    return panel;
+}
+
+/* report.html: what was found and how sure it is, with every run. */
+static int write_page(const request *q, const findings *f, int argc, char **argv)
+{
+    static const page_row row[] = {
+        {"critical_velocity_m_s", "critical velocity", "m/s", 1, 1, "median over the positions of the grid"},
+        {"lowest_m_s", "lowest", "m/s", 1, 1, "of all positions"},
+        {"highest_m_s", "highest", "m/s", 1, 1, "of all positions"},
+        {"not_bonded_below_m_s", "not bonded at", "m/s", 1, 0,
+         "the velocity next below that was tried: the search goes no finer than that"},
+        {"offsets_without_bond", "positions without a bond", "", 0, 0, "where nothing bonded at any velocity"},
+        {"pbcp_percent", "PBCP", "%", 2, 0,
+         "bonded share of the surface that touched, at the critical velocity of the middle position"},
+        {"v_rest_m_s", "rebound velocity", "m/s", 3, 0, "there"}, {"runs", "runs", "", 0, 0, "of the search"}};
+    static page_runs runs;
+    const critical_spread *s = &f->spread;
+    page_panel panel[2];
+    page_desc d = page_of(q->o, q->n, argc, argv);
+    char verdict[120], lead[300], title[120], text[3][60];
+    int p;
+    page_runs_of(&runs, &f->curve);
+    for (p = 0; p < 2; p++) panel[p] = page_panel_of(&runs, p, s);
+    d.good = s->median < HUGE_VAL;
+    snprintf(verdict, sizeof verdict, d.good ? "It bonds from %s on." : "It bonds at %s.",
+             velocity_text(s->median, &q->range, text[0], sizeof text[0]));
+    snprintf(lead, sizeof lead, "A particle of %s, %g " PAGE_MU "m across: the lowest velocity that bonds is %s to %s "
+             "at %lld positions of the grid, each found to within %g m/s.", q->c.material, q->c.diameter,
+             velocity_text(s->lowest, &q->range, text[1], sizeof text[1]),
+             velocity_text(s->highest, &q->range, text[2], sizeof text[2]), (long long)q->offsets, q->range.step);
+    snprintf(title, sizeof title, "Critical velocity of %s, %g " PAGE_MU "m", q->c.material, q->c.diameter);
+    d.program = "critical_velocity";
+    d.title = title;
+    d.verdict = verdict;
+    d.lead = lead;
+    d.row = row;
+    d.rows = (int)(sizeof row / sizeof *row);
+    d.panel = panel;
+    d.panels = 2;
+    d.picture = "curve.png";
+    return page_write(&d, q->s.folder);
+}
+
 static void print_answers(const request *q, const findings *f)
 {
     const critical_spread *s = &f->spread;
@@ -144,10 +235,11 @@ static void print_answers(const request *q, const findings *f)
         else
             printf("  %14.4g   %s\n", a->offset, velocity_text(HUGE_VAL, &q->range, text[0], sizeof text[0]));
     }
-    printf("\n  median %s, lowest %s, highest %s; %s/curve.csv, curve.png, summary.json\n",
+    printf("\n  median %s, lowest %s, highest %s; %s/%scurve.csv, curve.png, summary.json\n",
            velocity_text(s->median, &q->range, text[0], sizeof text[0]),
            velocity_text(s->lowest, &q->range, text[1], sizeof text[1]),
-           velocity_text(s->highest, &q->range, text[2], sizeof text[2]), q->s.folder);
+           velocity_text(s->highest, &q->range, text[2], sizeof text[2]), q->s.folder,
+           q->no_report ? "" : "report.html, ");
 }
 
 /* ---- main ---------------------------------------------------------------------------------- */
@@ -170,6 +262,7 @@ static void options(request *q)
     option_add(o, &n, "step", OPTION_REAL, &q->range.step, "width of the bracket at the end, m/s");
     option_add(o, &n, "offsets", OPTION_INTEGER, &q->offsets, "grid offsets: k/N of a cell, k = 0 .. N-1");
     study_options(&q->s, o, &n);
+    option_add(o, &n, "no-report", OPTION_FLAG, &q->no_report, "no report.html");
     q->n = n;
 }
 
@@ -225,6 +318,7 @@ static int carry_out(int argc, char **argv)
     char message[400];
     mpm_fault fault;
     int status;
+    q.no_report = 0;
     q.s = study_of("build/critical_velocity-out");
     q.c = surface ? impact_case_surface() : study_case_default();
     q.substrate = "thesis";
@@ -237,9 +331,9 @@ static int carry_out(int argc, char **argv)
         q.range.low = 600;
     }
     options(&q);
-    status = options_parse(argc, argv, "The lowest impact velocity that bonds (source A, 5.2.2). Writes curve.csv,\n"
-                           "curve.png and summary.json into the output folder; run again after an interruption,\n"
-                           "it goes on.", q.o, q.n);
+    status = options_parse(argc, argv, "The lowest impact velocity that bonds (source A, 5.2.2). Writes report.html,\n"
+                           "curve.csv, curve.png and summary.json into the output folder; run again after an\n"
+                           "interruption, it goes on.", q.o, q.n);
     if (status) return status < 0;
     study_complete(&q.c, q.substrate);
     status = check(&q, message, sizeof message) ? search(&q, &f, message, sizeof message) : 0;
@@ -247,6 +341,7 @@ static int carry_out(int argc, char **argv)
     if (status < 0) return study_stopped(&q.s);
     if (!write_curve(&q, &f.curve, &fault) || !draw_curve(&q, &f.curve, &fault) || !write_summary(&q, &f, &fault))
         return !report(&fault, q.s.folder);
+    if (!q.no_report && !write_page(&q, &f, argc, argv)) return 1;
     if (!q.s.quiet) print_answers(&q, &f);
     return 0;
 }

@@ -18,6 +18,8 @@ static int carry_out(int argc, char **argv)
     q.count = 10;
     q.base.substrate_diameter = q.base.time = 0;
     particles_method(&q, argc, argv);
+    q.argc = argc;
+    q.argv = argv;
     n = particles_options(&q, o);
     option_add(o, &n, "count", OPTION_INTEGER, &q.count, "particles, 1 .. 500");
     option_add(o, &n, "spread", OPTION_REAL, &spread, "width of the region of their centres, um");
@@ -25,9 +27,10 @@ static int carry_out(int argc, char **argv)
     option_add(o, &n, "seed", OPTION_INTEGER, &seed, "of the places");
     parsed = options_parse(argc, argv,
                            "Particles at random places and heights. --substrate-diameter 0: spread and one particle;\n"
-                           "--time 0: the fall from the full height and 40 ns. Writes particles.csv, pairs.csv,\n"
-                           "summary.json, particles.pvd (ParaView) and frames; run again with the same options after\n"
-                           "an interruption, it goes on; a finished scene is not repeated: delete the folder for that.",
+                           "--time 0: the fall from the full height and 40 ns. Writes report.html, particles.csv,\n"
+                           "pairs.csv, summary.json, particles.pvd (ParaView) and frames; run again with the same\n"
+                           "options after an interruption, it goes on; a finished scene is not repeated: delete the\n"
+                           "folder for that.",
                            o, n);
     if (parsed) return parsed < 0;
     if (!case_wants(q.count >= 1 && q.count <= PARTICLES, "count", (double)q.count, "must be 1 .. 500", message,

@@ -6,6 +6,7 @@
 
 #include "impact_history.h"
 #include "impact_options.h"
+#include "report.h"
 #include "restart.h"
 #include "study.h"
 
@@ -17,6 +18,9 @@ typedef struct particles_case {
     double center[PARTICLES][3]; /* um, over the substrate's face */
     int64_t stop_after;          /* steps made now, then a checkpoint; 0: never */
     output out;
+    page sheet;
+    int argc;                    /* the command line, for the report; 0: none */
+    char **argv;
 } particles_case;
 
 /* Source A's model, aluminium as its results were reproduced with, a coarse 3D grid, 100 ns. */
@@ -340,11 +344,13 @@ static inline int particles_frame(const impact *s, particles_case *q)
     const mpm_points *p = &s->world.points;
     const double width = 2 * impact_half_width(&q->base), high = impact_half_height(&q->base);
     double edge = q->base.substrate_diameter / 2 + width / 2, top = 2 * high;
-    int32_t *partner = (int32_t *)malloc((size_t)p->count * sizeof *partner), i;
+    int32_t *partner, i;
     output_picture picture;
     mpm_io_field field;
     int64_t k;
     int ok;
+    if (!page_frame(&q->sheet, &q->out, &s->world, &s->surfaces)) return 0;
+    partner = (int32_t *)malloc((size_t)p->count * sizeof *partner);
     if (!partner) return complain("no memory for output");
     for (i = 0; i < p->count; i++) partner[i] = (int32_t)p->user[s->bond.partner][i] - 1;
     field = mpm_io_int32(s->world.user_name[s->bond.partner], partner); /* the body; -1: none */
@@ -497,6 +503,47 @@ static inline int particles_summary(const impact *s, const particles_case *q, co
     return mpm_io_json_end(&j, &fault) >= 0 || report(&fault, path);
 }
 
+/* report.html, if it is wanted. Without it the scene does not count as finished. Returns 1, or 0 after a message. */
+static inline int particles_page(const impact *s, const particles_case *q, const particle_report *r,
+                                 const history *past, const option *o, int n)
+{
+    static const page_row row[] = {
+        {"bonded", "bonded", "particles", 0, 1, "a chain of bonds leads to the substrate; as slow as it to 5 m/s"},
+        {"resting", "resting", "particles", 0, 0, "so slow, without such a chain"},
+        {"rebounded", "rebounded", "particles", 0, 1, "leave faster upwards than along the face"},
+        {"sheared off", "sheared off", "particles", 0, 1, "leave faster along the face"},
+        {"arriving", "arriving", "particles", 0, 0, "on their way down"},
+        {"pbcp_percent", "PBCP, bonded share", "%", 2, 1, "of all surface that touched, the part that bonded, by area"},
+        {"energy_unaccounted", "energy unaccounted", "", 5, 0, "of that at the start, what no account explains"},
+        {"points", "points", "", 0, 0, "material points of the model"}, {"steps", "steps", "", 0, 0, "of time"}};
+    page_desc d = page_of(o, n, q->argc, q->argv);
+    char verdict[80], lead[300], title[160], picture[40], path[PATH_BYTES];
+    int64_t bonded = 0, k;
+    if (!q->sheet.on) return 1;
+    for (k = 0; k < q->count; k++) bonded += r[k].fate == PARTICLE_BONDED;
+    snprintf(verdict, sizeof verdict, "%lld of %lld particles bonded.", (long long)bonded, (long long)q->count);
+    snprintf(lead, sizeof lead, "Particles of %s, %g " PAGE_MU "m across, hit %s at %g m/s; this is after %.4g ns. "
+             "What became of each is in particles.csv.", q->base.material, q->base.diameter,
+             s->material[IMPACT_SUBSTRATE].name, q->base.velocity, (double)s->world.time * 1e3);
+    d.program = q->out.name;
+    d.title = particles_title(q, title, sizeof title);
+    d.verdict = verdict;
+    d.lead = lead;
+    d.good = bonded == q->count;
+    d.row = row;
+    d.rows = (int)(sizeof row / sizeof *row);
+    d.past = past;
+    d.world = &s->world;
+    d.length = q->out.length;
+    d.time = q->out.time;
+    d.spacing = q->base.spacing;
+    snprintf(picture, sizeof picture, "frame_%04lld.png", (long long)q->out.frame - 1);
+    if (q->out.frame > 0) d.picture = picture;
+    if (page_write(&d, q->out.folder)) return 1;
+    remove(file_in(q->out.folder, "summary.json", path, sizeof path));
+    return 0;
+}
+
 static inline void particles_print(const particles_case *q, const particle_report *r, const impact *s)
 {
     const int64_t shown = q->count < 40 ? q->count : 40;
@@ -646,16 +693,18 @@ static inline int particles_main(particles_case *q, const option *o, int n)
     int status;
     if (!particles_begin(&s, q, message, sizeof message)) return !complain(message);
     particles_again(&again, &s, q, &past);
-    status = particles_resume(&s, q, &again) ? particles_run(&s, q, &again) : 0;
+    status = particles_resume(&s, q, &again) && page_begin(&q->sheet, &q->out, q->base.spacing)
+                 ? particles_run(&s, q, &again) : 0;
     if (status < 0)
         printf("stopped at step %lld of %lld; run again to go on\n", (long long)s.world.steps, (long long)s.steps);
     if (status > 0) {
         particles_report(&s, q, r);
         status = particles_table(q, r) && particles_pairs(&s, q) && particles_history(q, &past) &&
-                 particles_summary(&s, q, r, o, n);
+                 particles_summary(&s, q, r, o, n) && particles_page(&s, q, r, &past, o, n);
     }
     if (status > 0) {
         restart_end(&again);
+        page_end(&q->sheet, q->out.folder);
         if (!q->out.quiet) particles_print(q, r, &s);
     }
     impact_end(&s);
@@ -668,6 +717,7 @@ static inline int particles_options(particles_case *q, option *o)
     int n = impact_options(&q->base, o);
     option_drop(o, &n, "gap"); /* by the places of the particles */
     output_options(&q->out, o, &n);
+    page_options(&q->sheet, o, &n);
     option_add(o, &n, "stop-after", OPTION_INTEGER, &q->stop_after,
                "write a checkpoint after so many steps and stop; 0: never");
     return n;
@@ -676,7 +726,7 @@ static inline int particles_options(particles_case *q, option *o)
 /* ... and what they may be. */
 static inline int particles_check(const particles_case *q, char *message, size_t n)
 {
-    return output_check(&q->out, message, n) &&
+    return output_check(&q->out, message, n) && page_check(&q->sheet, message, n) &&
            case_wants(q->stop_after >= 0, "stop-after", (double)q->stop_after, "must be >= 0", message, n);
 }
 

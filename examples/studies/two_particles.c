@@ -17,15 +17,17 @@ static int carry_out(int argc, char **argv)
     int n, parsed;
     q = particles_default("half", "build/two_particles-out");
     particles_method(&q, argc, argv);
+    q.argc = argc;
+    q.argv = argv;
     n = particles_options(&q, o);
     option_add(o, &n, "offset", OPTION_REAL, &offset, "of the second particle along x, at the start, um");
     option_add(o, &n, "height", OPTION_REAL, &height, "of its centre over the substrate, at the start, um");
     option_add_word(o, &n, "leads", &leads, "top|bottom",
                     "whose surface sets the (ranked) normal between the two, and is number 1 in the report");
     parsed = options_parse(argc, argv, "Two particles, one after the other, on one spot or beside it.\n"
-                           "Writes particles.csv, pairs.csv, summary.json, particles.pvd (ParaView) and frames;\n"
-                           "run again with the same options after an interruption, it goes on; a finished scene\n"
-                           "is not repeated: delete the folder for that.", o, n);
+                           "Writes report.html, particles.csv, pairs.csv, summary.json, particles.pvd (ParaView) and\n"
+                           "frames; run again with the same options after an interruption, it goes on; a finished\n"
+                           "scene is not repeated: delete the folder for that.", o, n);
     if (parsed) return parsed < 0;
     particles_complete(&q);
     if (!particles_check(&q, message, sizeof message) ||

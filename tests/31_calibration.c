@@ -4,6 +4,8 @@
 #include "mpm_measure.h"
 #include "check.h"
 
+#include <string.h>
+
 enum { TESTS = 4000, BATCHES = 16 };
 
 static uint64_t seed = 20260101;

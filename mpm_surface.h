@@ -599,6 +599,24 @@ static inline mpm_real mpm__surface_nearest(const mpm_surface *c, int32_t face, 
     return square;
 }
 
+/* How far the surface stands out over a face, at the place x that its corners' shares make: a curve through the corners
+   at right angles to their normals n_k, of height sum_k share_k (x_k - x).n_k / 2, exact to the second order of the
+   face's size. A corner whose normal is tilted by more than 18 degrees is an edge of the body: the face is flat. */
+static inline mpm_real mpm__surface_rise(const mpm_surface *c, int32_t face, const mpm_real *share, const mpm_real *x)
+{
+    mpm_real out[3], way[3], length, rise = 0;
+    int k;
+    mpm__surface_vector(c, face, out);
+    length = mpm__surface_length(out);
+    for (k = 0; k < c->corners; k++) {
+        const mpm_marker *m = &c->marker[c->face[face][k]];
+        if (!(mpm__surface_dot(m->normal, out) > MPM_R(0.95) * length)) return 0;
+        mpm__surface_way(x, m->x, way);
+        rise += share[k] * mpm__surface_dot(way, m->normal) / 2;
+    }
+    return rise;
+}
+
 /* ---- faces beside faces, and their halving ---------------------------------------------------------- */
 
 /* Drops markers that no face has, the others in their order, and finds which faces lie beside which. */
@@ -1636,7 +1654,8 @@ static inline void mpm__surface_velocity(const mpm_surfaces *s, const mpm_meet *
     }
 }
 
-/* Gap, its rate and the normal of a meeting with a surface: the normal goes evenly from one marker's to the next. */
+/* Gap, its rate and the normal of a meeting with a surface: the normal goes evenly from one marker's to the next, and
+   the gap is that to the curve. */
 static inline void mpm__surface_gap(const mpm_surfaces *s, const mpm_marker *m, mpm_meet *meet)
 {
     mpm_real x[3] = {0, 0, 0}, v[3], length;
@@ -1649,7 +1668,8 @@ static inline void mpm__surface_gap(const mpm_surfaces *s, const mpm_marker *m, 
         }
     length = mpm__surface_length(meet->normal);
     mpm__surface_velocity(s, meet, v);
-    meet->gap = meet->rate = 0;
+    meet->gap = -mpm__surface_rise(&s->surface[meet->other], meet->face, meet->share, x);
+    meet->rate = 0;
     for (d = 0; d < 3; d++) {
         meet->normal[d] = length > 0 ? meet->normal[d] / length : 0;
         meet->gap += (m->x[d] - x[d]) * meet->normal[d];
@@ -1684,7 +1704,8 @@ static inline mpm_status mpm__surface_find(mpm_surfaces *s, const mpm_world *w)
 /* ---- pressure and friction ------------------------------------------------------------------------ */
 
 /* The nodes that carry a place of a surface, with weights that leave out those of next to no mass:
-     w_I = N_I m_I / (m_I + eps m_ref), normalised to sum 1;  m_ref = rho h^3, in rings rho h^2 2 pi r_I         (S1)
+     w_I = N_I m_I / (m_I + eps m_ref), normalised to sum 1;  m_ref = rho h^3, in rings rho h^2 2 pi r_I, in plane
+     strain rho h^2                                                                                             (S1)
    Velocities are sums of w_I v_I, forces go to the nodes in the same shares (S2). 0 if the body has no node there. */
 static inline int mpm__surface_support(const mpm_surfaces *s, const mpm_world *w, int32_t body, const mpm_real *x,
                                        mpm_support *at)
@@ -1695,7 +1716,7 @@ static inline int mpm__surface_support(const mpm_surfaces *s, const mpm_world *w
     if (!mpm_support_at(w, body, x, at)) return 0;
     for (a = 0; a < at->count; a++) {
         const mpm_node *n = &w->node[at->slot[a]];
-        mpm_real place[3], length = 1;
+        mpm_real place[3], length = w->desc.geometry == MPM_3D ? h : 1;
         if (w->desc.geometry == MPM_AXISYMMETRIC) {
             mpm_node_position(w, n, place);
             length = 2 * MPM_PI * (place[0] > h / 8 ? place[0] : h / 8);
@@ -1847,6 +1868,29 @@ MPM_API mpm_status mpm_surface_contact(mpm_surfaces *s, mpm_world *w)
 
 /* ---- moving along -------------------------------------------------------------------------------- */
 
+/* Halves an edge of a face: the new marker is on the curve. */
+static inline mpm_status mpm__surface_halve(mpm_surfaces *s, mpm_surface *c, int32_t face, int k)
+{
+    const int next = (k + 1) % c->corners;
+    const mpm_marker *a = &c->marker[c->face[face][k]], *b = &c->marker[c->face[face][next]];
+    mpm_real share[3] = {0, 0, 0}, middle[3], out[3], rise, length;
+    mpm_status st;
+    int d;
+    share[k] = share[next] = MPM_R(0.5);
+    for (d = 0; d < 3; d++) {
+        middle[d] = (a->x[d] + b->x[d]) / 2;
+        out[d] = a->normal[d] + b->normal[d];
+    }
+    rise = mpm__surface_rise(c, face, share, middle);
+    length = mpm__surface_length(out);
+    st = mpm__surface_split(s, c, face, k, MPM_R(0.5));
+    for (d = 0; d < 3 && st == MPM_OK && length > 0; d++) {
+        c->marker[c->markers - 1].normal[d] = out[d] / length;
+        c->marker[c->markers - 1].x[d] += rise * out[d] / length;
+    }
+    return st;
+}
+
 /* Halves the longest edges of faces that have grown too long. */
 static inline mpm_status mpm__surface_refine(mpm_surfaces *s, const mpm_world *w, mpm_surface *c)
 {
@@ -1867,7 +1911,7 @@ static inline mpm_status mpm__surface_refine(mpm_surfaces *s, const mpm_world *w
             longest = square;
             worst = k;
         }
-        if (worst >= 0 && (st = mpm__surface_split(s, c, i, worst, MPM_R(0.5))) != MPM_OK) return st;
+        if (worst >= 0 && (st = mpm__surface_halve(s, c, i, worst)) != MPM_OK) return st;
     }
     return MPM_OK;
 }

@@ -60,6 +60,14 @@ static void critical(void)
     CHECK_TRUE("... not at the same velocity", number_in(summary, "lowest_m_s") < number_in(summary, "highest_m_s"));
     CHECK_NEAR("... with the median between", number_in(summary, "critical_velocity_m_s"),
                (number_in(summary, "lowest_m_s") + number_in(summary, "highest_m_s")) / 2, 1e-9);
+    snprintf(command, sizeof command, "%s --grids 2", search);
+    CHECK_EQUAL("a coarser grid", run(command), 0);
+    CHECK_TRUE("... is searched too", number_in(summary, "runs_made_now") > 4);
+    CHECK_EQUAL("... the answer stays", number_in(summary, "critical_velocity_m_s"), first);
+    CHECK_NEAR("... its distance is among what is uncertain", number_in(summary, "uncertainty_of_grid_m_s"),
+               fabs(first - number_in(summary, "coarser_grid_m_s")), 1e-9);
+    CHECK_TRUE("... with the bracket", number_in(summary, "uncertainty_m_s") >
+               number_in(summary, "uncertainty_of_grid_m_s"));
     snprintf(command, sizeof command, "%s --bond none", search);
     CHECK_EQUAL("without bonding", run(command), 0);
     CHECK_EQUAL("... no velocity bonds", number_in(summary, "offsets_without_bond"), 1);
@@ -70,6 +78,7 @@ static void critical(void)
     CHECK_TRUE("... and no infinity", !strstr(output, "inf"));
     refused("critical_velocity --rule often", "often");
     refused("critical_velocity --offsets 0", "offsets 0");
+    refused("critical_velocity --grids 3", "grids 3");
     refused("critical_velocity --low -5", "-5");
     refused("critical_velocity --high 100", "high 100");
     refused("critical_velocity --step 0", "step 0");

@@ -182,7 +182,7 @@ static int options(calibration *q, study *s, errand *e, option *o)
     option_add(o, &n, "diameter-2", OPTION_REAL, &q->diameter[1], "um");
     option_add(o, &n, "velocity-2", OPTION_REAL, &q->velocity[1], "m/s");
     option_add_word(o, &n, "rule", &q->rule, CRITICAL_RULES, "what counts as bonded, see critical_velocity");
-    option_add(o, &n, "pbcp-1", OPTION_REAL, &q->pbcp[0], "rule thesis: least PBCP, %; 0: source A's for the grid");
+    option_add(o, &n, "pbcp-1", OPTION_REAL, &q->pbcp[0], "least PBCP, %; 0: source A's for the grid");
     option_add(o, &n, "pbcp-2", OPTION_REAL, &q->pbcp[1], "");
     option_add(o, &n, "restitution-1", OPTION_REAL, &q->restitution[0],
                "rule thesis: highest rebound ratio; 0: source A's");

@@ -7,14 +7,17 @@
 
 /* When a run counts as bonded. "thesis": PBCP at least `pbcp` and the rebound velocity of the points up
    to 60 m/s at most `v_rest` (source A, section 5.2.2: 5 % and 0.6 m/s; up to 14 um 4.8 % and 0.9 m/s).
-   "stays": the particle's mean velocity, averaged over the last eighth of the run, is below `stays` in size and the
-   bond was at work in that time: what a camera would see, without a tolerance on PBCP. Velocities are
+   "stays": the particle's mean velocity, averaged over the last eighth of the run, leads away from the substrate at
+   less than `stays` (drawn back by its bond it may be negative), the bond was at work in that time, and at its end at
+   least `pbcp` of what touched is bonded. On surfaces that is 1 or 2 % where the particle has left, however slowly, and
+   half where it has not. Velocities are
    relative to the substrate's mean, since large particles drift with it. */
 typedef struct critical_rule {
     const char *name;
-    double pbcp, v_rest, stays; /* %, m/s, m/s; pbcp, v_rest 0: source A's for the size */
+    double pbcp, v_rest, stays; /* %, m/s, m/s; thesis: pbcp, v_rest 0: source A's for the size */
 } critical_rule;
 
+#define CRITICAL_LEFT 10 /* % of PBCP: what stays on its surface has more, see above */
 #define CRITICAL_RULES "thesis|stays"
 
 static inline critical_rule critical_rule_default(void)
@@ -29,7 +32,8 @@ static inline critical_rule critical_rule_default(void)
 static inline int critical_bonds(const critical_rule *r, double diameter, const double *value)
 {
     const int smallest = diameter <= 14;
-    if (!strcmp(r->name, "stays")) return fabs(value[STUDY_V_LATE]) < r->stays && value[STUDY_HELD_LATE] > 0;
+    if (!strcmp(r->name, "stays"))
+        return value[STUDY_V_LATE] < r->stays && value[STUDY_HELD_LATE] > 0 && value[STUDY_PBCP] >= r->pbcp;
     return value[STUDY_PBCP] >= (r->pbcp > 0 ? r->pbcp : smallest ? 4.8 : 5.0) &&
            value[STUDY_V_REST] <= (r->v_rest > 0 ? r->v_rest : smallest ? 0.9 : 0.6);
 }

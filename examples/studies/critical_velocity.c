@@ -1,21 +1,22 @@
 /* critical_velocity - the lowest velocity at which a particle bonds (source A, 5.2.2, Table 5.4).
 
-   Runs a range of impact velocities, halves the gap under the lowest one that bonds, and does so at
-   several positions of the grid, since the answer of this method depends on it. Axisymmetric by default:
-   a few seconds a run at 14 um. Every finished run is kept in the output folder under its whole
-   description and never repeated; delete the folder after changing the headers. Source A: 824, 809, 791,
-   776, 761 m/s for 14, 18, 22, 26, 30 um. SPDX-License-Identifier: MIT */
+   Runs a range of impact velocities, halves the gap under the lowest one that bonds, and does so at several
+   positions of the grid, since the answer of this method depends on it, and with --grids 2 on a coarser grid too:
+   what is uncertain about it is printed. Axisymmetric by default: a few seconds a run at 14 um. Every finished run
+   is kept in the output folder under its whole description and never repeated; delete the folder after changing the
+   headers. Source A: 824, 809, 791, 776, 761 m/s for 14, 18, 22, 26, 30 um. SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "critical.h"
 #include "report.h"
 
 #define OFFSETS 32
+#define COARSER 1.4 /* cells of the second grid over those of the first */
 
 typedef struct request {
     study s;
     impact_case c;
     const char *substrate;
-    int64_t offsets;
+    int64_t offsets, grids;
     critical_rule rule;
     critical_range range;
     int no_report;
@@ -28,6 +29,13 @@ typedef struct findings {
     critical_answer answer[OFFSETS];
     critical_spread spread;
 } findings;
+
+/* How far the answer can be off, m/s: half the bracket (NaN: the range begins bonded), half the spread over positions,
+   the way to the answer of the coarser grid (NaN without one), and the root of the sum of squares of those that are
+   known. */
+typedef struct uncertainty {
+    double bracket, positions, grid, all;
+} uncertainty;
 
 static const char *const program = "examples/studies/critical_velocity.c";
 
@@ -98,6 +106,28 @@ static void write_answer(mpm_io_json *j, const critical_answer *a)
     mpm_io_json_close(j);
 }
 
+/* Of the findings f[0], and f[1] on the coarser grid. */
+static uncertainty uncertainty_of(const request *q, const findings *f)
+{
+    const critical_spread *s = &f[0].spread;
+    uncertainty u;
+    u.bracket = s->middle.below > 0 ? (s->middle.velocity - s->middle.below) / 2 : NAN;
+    u.positions = (s->highest - s->lowest) / 2;
+    u.grid = q->grids > 1 ? fabs(s->median - f[1].spread.median) : NAN;
+    u.all = sqrt(u.bracket * u.bracket + u.positions * u.positions + (q->grids > 1 ? u.grid * u.grid : 0));
+    return u;
+}
+
+static void write_uncertainty(const request *q, const findings *f, mpm_io_json *j)
+{
+    const uncertainty u = uncertainty_of(q, f);
+    mpm_io_json_number(j, "uncertainty_m_s", u.all);
+    mpm_io_json_number(j, "uncertainty_of_bracket_m_s", u.bracket);
+    mpm_io_json_number(j, "uncertainty_of_position_m_s", u.positions);
+    mpm_io_json_number(j, "uncertainty_of_grid_m_s", u.grid);
+    if (q->grids > 1) mpm_io_json_number(j, "coarser_grid_m_s", f[1].spread.median);
+}
+
 static int write_summary(const request *q, const findings *f, mpm_fault *fault)
 {
     const critical_spread *s = &f->spread;
@@ -110,6 +140,7 @@ static int write_summary(const request *q, const findings *f, mpm_fault *fault)
     mpm_io_json_number(&j, "not_bonded_below_m_s", s->middle.below);
     mpm_io_json_number(&j, "lowest_m_s", s->lowest);
     mpm_io_json_number(&j, "highest_m_s", s->highest);
+    write_uncertainty(q, f, &j);
     mpm_io_json_integer(&j, "offsets_without_bond", s->none);
     mpm_io_json_number(&j, "pbcp_percent", s->middle.pbcp);
     mpm_io_json_number(&j, "v_rest_m_s", s->middle.v_rest);
@@ -220,6 +251,19 @@ static int write_page(const request *q, const findings *f, int argc, char **argv
     return page_write(&d, q->s.folder);
 }
 
+/* The answer with what is uncertain about it; nothing where half of the positions do not bond, or nothing is below. */
+static void print_uncertainty(const request *q, const findings *f)
+{
+    const uncertainty u = uncertainty_of(q, f);
+    if (!(u.all < HUGE_VAL)) return;
+    printf("  %.4g m/s, uncertain by %.3g: bracket %.3g, positions %.3g", f->spread.median, u.all, u.bracket,
+           u.positions);
+    if (q->grids > 1)
+        printf(", grid %.3g (cells of %.3g um: %.4g)\n", u.grid, COARSER * q->c.cell, f[1].spread.median);
+    else
+        printf("; add --grids 2 for what the cells do\n");
+}
+
 static void print_answers(const request *q, const findings *f)
 {
     const critical_spread *s = &f->spread;
@@ -240,6 +284,7 @@ static void print_answers(const request *q, const findings *f)
            velocity_text(s->lowest, &q->range, text[1], sizeof text[1]),
            velocity_text(s->highest, &q->range, text[2], sizeof text[2]), q->s.folder,
            q->no_report ? "" : "report.html, ");
+    print_uncertainty(q, f);
 }
 
 /* ---- main ---------------------------------------------------------------------------------- */
@@ -252,7 +297,7 @@ static void options(request *q)
     option_drop(o, &n, "grid-offset"); /* by --offsets */
     option_add_word(o, &n, "substrate", &q->substrate, STUDY_SUBSTRATES, "source A's sizes, or 5 x 2.5 diameters");
     option_add_word(o, &n, "rule", &q->rule.name, CRITICAL_RULES, "what counts as bonded");
-    option_add(o, &n, "pbcp", OPTION_REAL, &q->rule.pbcp, "rule thesis: least PBCP, %; 0: 5, up to 14 um 4.8");
+    option_add(o, &n, "pbcp", OPTION_REAL, &q->rule.pbcp, "least PBCP, %; 0 with rule thesis: 5, up to 14 um 4.8");
     option_add(o, &n, "v-rest", OPTION_REAL, &q->rule.v_rest,
                "rule thesis: highest rebound, m/s; 0: 0.6, up to 14 um 0.9");
     option_add(o, &n, "stays", OPTION_REAL, &q->rule.stays, "rule stays: the late mean velocity is below, m/s");
@@ -261,6 +306,8 @@ static void options(request *q)
     option_add(o, &n, "scan", OPTION_REAL, &q->range.scan, "distance of the first velocities, m/s");
     option_add(o, &n, "step", OPTION_REAL, &q->range.step, "width of the bracket at the end, m/s");
     option_add(o, &n, "offsets", OPTION_INTEGER, &q->offsets, "grid offsets: k/N of a cell, k = 0 .. N-1");
+    option_add(o, &n, "grids", OPTION_INTEGER, &q->grids,
+               "1, or 2: once more with cells, spacing and step 1.4 times as large, for the uncertainty");
     study_options(&q->s, o, &n);
     option_add(o, &n, "no-report", OPTION_FLAG, &q->no_report, "no report.html");
     q->n = n;
@@ -272,6 +319,7 @@ static int check(const request *q, char *m, size_t n)
     return impact_check(&q->c, m, n) &&
            case_wants(q->offsets >= 1 && q->offsets <= OFFSETS, "offsets", (double)q->offsets, "must be 1 .. 32", m,
                       n) &&
+           case_wants(q->grids >= 1 && q->grids <= 2, "grids", (double)q->grids, "must be 1 or 2", m, n) &&
            case_wants(q->rule.pbcp >= 0, "pbcp", q->rule.pbcp, "must be >= 0 %", m, n) &&
            case_wants(q->rule.v_rest >= 0, "v-rest", q->rule.v_rest, "must be >= 0 m/s", m, n) &&
            case_wants(q->rule.stays > 0, "stays", q->rule.stays, "must be > 0 m/s", m, n) &&
@@ -286,8 +334,8 @@ static int check(const request *q, char *m, size_t n)
                       "scan", q->range.scan, "makes more than 2000 runs", m, n);
 }
 
-/* All offsets. As study_need. */
-static int search(request *q, findings *f, char *message, size_t n)
+/* All offsets of the grid of q->c. As study_need. */
+static int search_grid(request *q, findings *f, char *message, size_t n)
 {
     const int surface = !strcmp(q->c.method, "surface");
     const double middle = (q->range.low + q->range.high) / 2;
@@ -296,7 +344,7 @@ static int search(request *q, findings *f, char *message, size_t n)
     memset(&guess, 0, sizeof guess);
     guess.below = middle - q->range.scan / 2;
     guess.velocity = middle + q->range.scan / 2;
-    q->s.planned = (surface ? critical_cost_near(&q->range) : critical_cost(&q->range)) * q->offsets;
+    q->s.planned = q->s.done + (surface ? critical_cost_near(&q->range) : critical_cost(&q->range)) * q->offsets;
     for (k = 0; k < q->offsets && status > 0; k++) {
         q->c.offset = q->c.cell * k / (double)q->offsets;
         status = critical_search(&q->s, &q->c, &q->range, &q->rule, surface ? &guess : NULL, &f->curve, &f->answer[k],
@@ -310,9 +358,23 @@ static int search(request *q, findings *f, char *message, size_t n)
     return 1;
 }
 
+/* All grids. As study_need. */
+static int search(request *q, findings *f, char *message, size_t n)
+{
+    const impact_case given = q->c;
+    int status = search_grid(q, &f[0], message, n);
+    if (status <= 0 || q->grids < 2) return status;
+    q->c.cell *= COARSER;
+    q->c.spacing *= COARSER;
+    q->c.dt_factor *= COARSER;
+    status = impact_check(&q->c, message, n) ? search_grid(q, &f[1], message, n) : 0;
+    q->c = given;
+    return status;
+}
+
 static int carry_out(int argc, char **argv)
 {
-    static findings f;
+    static findings f[2]; /* with cells as asked for; coarser */
     const int surface = !strcmp(impact_method(argc, argv, "surface"), "surface");
     request q;
     char message[400];
@@ -323,11 +385,13 @@ static int carry_out(int argc, char **argv)
     q.c = surface ? impact_case_surface() : study_case_default();
     q.substrate = "thesis";
     q.offsets = surface ? 4 : 1;
+    q.grids = 1;
     q.rule = critical_rule_default();
     q.range = critical_range_default();
     if (surface) {
         q.rule.name = "stays";
         q.rule.stays = 5;
+        q.rule.pbcp = CRITICAL_LEFT;
         q.range.low = 600;
     }
     options(&q);
@@ -336,13 +400,13 @@ static int carry_out(int argc, char **argv)
                            "interruption, it goes on.", q.o, q.n);
     if (status) return status < 0;
     study_complete(&q.c, q.substrate);
-    status = check(&q, message, sizeof message) ? search(&q, &f, message, sizeof message) : 0;
+    status = check(&q, message, sizeof message) ? search(&q, f, message, sizeof message) : 0;
     if (status == 0) return !complain(message);
     if (status < 0) return study_stopped(&q.s);
-    if (!write_curve(&q, &f.curve, &fault) || !draw_curve(&q, &f.curve, &fault) || !write_summary(&q, &f, &fault))
+    if (!write_curve(&q, &f->curve, &fault) || !draw_curve(&q, &f->curve, &fault) || !write_summary(&q, f, &fault))
         return !report(&fault, q.s.folder);
-    if (!q.no_report && !write_page(&q, &f, argc, argv)) return 1;
-    if (!q.s.quiet) print_answers(&q, &f);
+    if (!q.no_report && !write_page(&q, f, argc, argv)) return 1;
+    if (!q.s.quiet) print_answers(&q, f);
     return 0;
 }
 

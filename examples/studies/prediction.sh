@@ -161,7 +161,7 @@ lines() { # the unbonded runs, grid by grid
     rows 'NR > 1 {
             g = $1 " | " $2 " | " $6
             if (!(g in n)) { order[++all] = g; low[g] = high[g] = $4 }
-            n[g]++; stays[g] += $5 > 0 && $4 < 5 && $4 > -5
+            n[g]++; stays[g] += $5 > 0 && $4 < 5
             if ($4 < low[g]) low[g] = $4; if ($4 > high[g]) high[g] = $4
         }
         END {

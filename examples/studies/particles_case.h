@@ -730,4 +730,53 @@ static inline int particles_check(const particles_case *q, char *message, size_t
            case_wants(q->stop_after >= 0, "stop-after", (double)q->stop_after, "must be >= 0", message, n);
 }
 
+/* ---- many at random: many_particles and its twin with MPI ------------------------------------- */
+
+/* Where particles are drawn. */
+typedef struct particles_random {
+    double spread, height; /* um */
+    int64_t seed;
+} particles_random;
+
+static inline particles_random particles_random_default(void)
+{
+    particles_random p = {60, 0, 1};
+    return p;
+}
+
+/* Ten of them. */
+static inline particles_case particles_many(int argc, char **argv, const char *folder)
+{
+    particles_case q = particles_default("full", folder);
+    q.count = 10;
+    q.base.substrate_diameter = q.base.time = 0;
+    particles_method(&q, argc, argv);
+    q.argc = argc;
+    q.argv = argv;
+    return q;
+}
+
+static inline int particles_many_options(particles_case *q, particles_random *p, option *o)
+{
+    int n = particles_options(q, o);
+    option_add(o, &n, "count", OPTION_INTEGER, &q->count, "particles, 1 .. 500");
+    option_add(o, &n, "spread", OPTION_REAL, &p->spread, "width of the region of their centres, um");
+    option_add(o, &n, "height", OPTION_REAL, &p->height, "of that region, um; 0: particles fill a fifth of it");
+    option_add(o, &n, "seed", OPTION_INTEGER, &p->seed, "of the places");
+    return n;
+}
+
+/* Checks the options and draws the places. Returns 1, or 0 with a message. */
+static inline int particles_many_place(particles_case *q, particles_random *p, char *message, size_t n)
+{
+    if (!case_wants(q->count >= 1 && q->count <= PARTICLES, "count", (double)q->count, "must be 1 .. 500", message, n) ||
+        !particles_check(q, message, n) ||
+        !case_wants(p->spread > 0 && p->spread < 1e4, "spread", p->spread, "must be > 0 um", message, n) ||
+        !case_wants(p->height >= 0 && p->height < 1e4, "height", p->height, "must be >= 0 um", message, n) ||
+        !case_wants(q->base.velocity > 0, "velocity", q->base.velocity, "must be > 0 m/s", message, n))
+        return 0;
+    if (!(p->height > 0)) p->height = particles_height(q, p->spread);
+    return particles_place(q, p->spread, p->height, p->seed, message, n);
+}
+
 #endif

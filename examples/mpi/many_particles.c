@@ -197,7 +197,7 @@ static int finish(many *m, particles_case *q, impact *s, const option *o, int n)
         ok = particles_table(q, r) && particles_pairs(&whole, q) && particles_summary(&whole, q, r, o, n);
     }
     if (ok && q->out.frames > 0) ok = particles_frame(&whole, q);
-    if (ok && !q->out.quiet) particles_print(q, r, &whole);
+    if (ok && !q->out.quiet) particles_print(q, r, &whole, "ranks.csv, totals.json");
     if (ok) remove(file_in(q->out.folder, "ranks.json", path, sizeof path));
     impact_end(&whole);
     return ok;
@@ -228,15 +228,17 @@ static int carry_out(int argc, char **argv, int rank)
         "and particles.pvd (ParaView).";
     static particles_case q;
     static many m;
+    static const char *const serial[3] = {"report", "no-report", "hdf5"}; /* of the serial program alone */
     particles_random places = particles_random_default();
     option o[IMPACT_OPTIONS];
     char message[300];
-    int n, parsed;
+    int n, parsed, k;
     q = particles_many(argc, argv, "build/mpi/many_particles-out");
     m.balance = 200;
     m.uneven = 1.1;
     m.checkpoint = 60;
     n = particles_many_options(&q, &places, o);
+    for (k = 0; k < 3; k++) option_drop(o, &n, serial[k]);
     option_add(o, &n, "balance", OPTION_INTEGER, &m.balance, "steps between looks at the balance of the slabs; 0: never");
     option_add(o, &n, "uneven", OPTION_REAL, &m.uneven, "points of the fullest slab over the mean at which cuts move");
     option_add(o, &n, "checkpoint", OPTION_REAL, &m.checkpoint, "seconds between checkpoints; 0: none");

@@ -544,7 +544,8 @@ static inline int particles_page(const impact *s, const particles_case *q, const
     return 0;
 }
 
-static inline void particles_print(const particles_case *q, const particle_report *r, const impact *s)
+/* The end table; `files` that were written beside the tables. */
+static inline void particles_print(const particles_case *q, const particle_report *r, const impact *s, const char *files)
 {
     const int64_t shown = q->count < 40 ? q->count : 40;
     int64_t k;
@@ -553,8 +554,8 @@ static inline void particles_print(const particles_case *q, const particle_repor
         printf("  %8lld   %-11s   %6.2f   %10.3f   %7.2f   %9.2f   %9.1f\n", (long long)k,
                particle_fate_text[r[k].fate], r[k].met.pbcp, r[k].met.area, r[k].v_z, r[k].v_along,
                100 * r[k].ejected);
-    printf("\n  PBCP of all surfaces %.2f %%; %s/particles.csv, pairs.csv, history.csv, summary.json%s\n",
-           particles_pbcp(s, q), q->out.folder, q->out.frames > 0 ? ", history.png, particles.pvd" : "");
+    printf("\n  PBCP of all surfaces %.2f %%; %s/particles.csv, pairs.csv, summary.json, %s%s\n", particles_pbcp(s, q),
+           q->out.folder, files, q->out.frames > 0 ? ", particles.pvd" : "");
 }
 
 /* Whether a summary is of this version and number type; one that does not name the type is of double. */
@@ -705,7 +706,7 @@ static inline int particles_main(particles_case *q, const option *o, int n)
     if (status > 0) {
         restart_end(&again);
         page_end(&q->sheet, q->out.folder);
-        if (!q->out.quiet) particles_print(q, r, &s);
+        if (!q->out.quiet) particles_print(q, r, &s, q->out.frames > 0 ? "history.csv, history.png" : "history.csv");
     }
     impact_end(&s);
     return status > 0 ? 0 : status < 0 ? STOPPED : 1;

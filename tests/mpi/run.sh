@@ -79,9 +79,9 @@ for n in 1 2 4; do
     for table in particles.csv pairs.csv; do check "$n ranks: $table as the serial one" same serial on_$n $table; done
     [ $n = 1 ] || check "$n ranks: sums as on one, to 1e-12" sums on_1 on_$n
 done
-slide="--angle 75 --spread 20 --substrate-height 4" # particles that cross the cuts
+slide="--angle 45 --spread 20 --substrate-height 4 --cell 2 --spacing 1" # particles that cross the cuts
 check "particles that slide, on one rank" ranks 1 slide_1 $slide
-check "... on two, with cuts that follow them" ranks 2 slide_2 $slide --balance 25 --uneven 1
+check "... on three, with cuts that follow them" ranks 3 slide_2 $slide --balance 25 --uneven 1
 check "... which move" moved slide_2
 check "... with the same sums" sums slide_1 slide_2
 check "... and the same tables" same slide_1 slide_2 particles.csv

@@ -227,6 +227,14 @@ report-page: ## web/report as the C header examples/report_page.h, which is comm
 web-test: build/impact build/critical_velocity ## report.html in headless Chromium, with pictures of it in build/report-web
 	@sh tests/web/report.sh
 
+# MPI: a world cut into slabs, a rank each. Without mpicc there is nothing to build.
+.PHONY: mpi
+mpi: build/many_particles build/mpm.o ## examples/mpi with MPI, and its tests on up to four ranks (two minutes)
+	@command -v mpicc >/dev/null && command -v mpirun >/dev/null || \
+		{ echo "skip: mpicc or mpirun is not installed (libopenmpi-dev, openmpi-bin)"; exit 0; } && \
+		mkdir -p build/mpi && mpicc $(STRICT) $(COMPILED) $(INCLUDE) -Iexamples/mpi examples/mpi/many_particles.c \
+		build/mpm.o -o build/mpi/many_particles $(LDFLAGS) -lm && sh tests/mpi/run.sh
+
 figures: ## the figures of docs/method.md
 	@mkdir -p build
 	$(CC) $(STRICT) $(CFLAGS) $(INCLUDE) docs/figures.c -o build/figures $(LDFLAGS) -lm

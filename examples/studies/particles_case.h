@@ -544,7 +544,8 @@ static inline int particles_page(const impact *s, const particles_case *q, const
     return 0;
 }
 
-static inline void particles_print(const particles_case *q, const particle_report *r, const impact *s)
+/* The end table; `files` that were written beside the tables. */
+static inline void particles_print(const particles_case *q, const particle_report *r, const impact *s, const char *files)
 {
     const int64_t shown = q->count < 40 ? q->count : 40;
     int64_t k;
@@ -553,8 +554,8 @@ static inline void particles_print(const particles_case *q, const particle_repor
         printf("  %8lld   %-11s   %6.2f   %10.3f   %7.2f   %9.2f   %9.1f\n", (long long)k,
                particle_fate_text[r[k].fate], r[k].met.pbcp, r[k].met.area, r[k].v_z, r[k].v_along,
                100 * r[k].ejected);
-    printf("\n  PBCP of all surfaces %.2f %%; %s/particles.csv, pairs.csv, history.csv, summary.json%s\n",
-           particles_pbcp(s, q), q->out.folder, q->out.frames > 0 ? ", history.png, particles.pvd" : "");
+    printf("\n  PBCP of all surfaces %.2f %%; %s/particles.csv, pairs.csv, summary.json, %s%s\n", particles_pbcp(s, q),
+           q->out.folder, files, q->out.frames > 0 ? ", particles.pvd" : "");
 }
 
 /* Whether a summary is of this version and number type; one that does not name the type is of double. */
@@ -705,7 +706,7 @@ static inline int particles_main(particles_case *q, const option *o, int n)
     if (status > 0) {
         restart_end(&again);
         page_end(&q->sheet, q->out.folder);
-        if (!q->out.quiet) particles_print(q, r, &s);
+        if (!q->out.quiet) particles_print(q, r, &s, q->out.frames > 0 ? "history.csv, history.png" : "history.csv");
     }
     impact_end(&s);
     return status > 0 ? 0 : status < 0 ? STOPPED : 1;
@@ -728,6 +729,55 @@ static inline int particles_check(const particles_case *q, char *message, size_t
 {
     return output_check(&q->out, message, n) && page_check(&q->sheet, message, n) &&
            case_wants(q->stop_after >= 0, "stop-after", (double)q->stop_after, "must be >= 0", message, n);
+}
+
+/* ---- many at random: many_particles and its twin with MPI ------------------------------------- */
+
+/* Where particles are drawn. */
+typedef struct particles_random {
+    double spread, height; /* um */
+    int64_t seed;
+} particles_random;
+
+static inline particles_random particles_random_default(void)
+{
+    particles_random p = {60, 0, 1};
+    return p;
+}
+
+/* Ten of them. */
+static inline particles_case particles_many(int argc, char **argv, const char *folder)
+{
+    particles_case q = particles_default("full", folder);
+    q.count = 10;
+    q.base.substrate_diameter = q.base.time = 0;
+    particles_method(&q, argc, argv);
+    q.argc = argc;
+    q.argv = argv;
+    return q;
+}
+
+static inline int particles_many_options(particles_case *q, particles_random *p, option *o)
+{
+    int n = particles_options(q, o);
+    option_add(o, &n, "count", OPTION_INTEGER, &q->count, "particles, 1 .. 500");
+    option_add(o, &n, "spread", OPTION_REAL, &p->spread, "width of the region of their centres, um");
+    option_add(o, &n, "height", OPTION_REAL, &p->height, "of that region, um; 0: particles fill a fifth of it");
+    option_add(o, &n, "seed", OPTION_INTEGER, &p->seed, "of the places");
+    return n;
+}
+
+/* Checks the options and draws the places. Returns 1, or 0 with a message. */
+static inline int particles_many_place(particles_case *q, particles_random *p, char *message, size_t n)
+{
+    if (!case_wants(q->count >= 1 && q->count <= PARTICLES, "count", (double)q->count, "must be 1 .. 500", message, n) ||
+        !particles_check(q, message, n) ||
+        !case_wants(p->spread > 0 && p->spread < 1e4, "spread", p->spread, "must be > 0 um", message, n) ||
+        !case_wants(p->height >= 0 && p->height < 1e4, "height", p->height, "must be >= 0 um", message, n) ||
+        !case_wants(q->base.velocity > 0, "velocity", q->base.velocity, "must be > 0 m/s", message, n))
+        return 0;
+    if (!(p->height > 0)) p->height = particles_height(q, p->spread);
+    return particles_place(q, p->spread, p->height, p->seed, message, n);
 }
 
 #endif

@@ -232,7 +232,7 @@ web-test: build/impact build/critical_velocity ## report.html in headless Chromi
 mpi: build/many_particles build/mpm.o ## examples/mpi with MPI, and its tests on up to four ranks (two minutes)
 	@command -v mpicc >/dev/null && command -v mpirun >/dev/null || \
 		{ echo "skip: mpicc or mpirun is not installed (libopenmpi-dev, openmpi-bin)"; exit 0; } && \
-		mkdir -p build/mpi && mpicc $(STRICT) $(COMPILED) $(INCLUDE) -Iexamples/mpi examples/mpi/many_particles.c \
+		mkdir -p build/mpi && mpicc $(STRICT) $(CFLAGS) -DMPM_COMPILED $(INCLUDE) -Iexamples/mpi examples/mpi/many_particles.c \
 		build/mpm.o -o build/mpi/many_particles $(LDFLAGS) -lm && sh tests/mpi/run.sh
 
 figures: ## the figures of docs/method.md

@@ -121,9 +121,9 @@ static inline void ranks_park(mpm_world *w, int32_t i)
 /* The cell of a place along the axis of the cuts, in the whole grid; those outside count as the first and last. */
 static inline int32_t ranks_cell(const ranks *r, mpm_real x)
 {
-    const double c = floor((double)((x - r->whole.origin[r->axis]) / r->whole.cell));
+    const double c = (double)(x - r->whole.origin[r->axis]) / (double)r->whole.cell;
     const int32_t last = r->whole.cells[r->axis] - 1;
-    return c < 0 ? 0 : c > last ? last : (int32_t)c;
+    return !(c > 0) ? 0 : c > last ? last : (int32_t)c; /* cut off is rounded down, above 0 */
 }
 
 static inline int ranks_owns(const ranks *r, int rank, int32_t cell)

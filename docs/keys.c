@@ -134,7 +134,8 @@ static const key particles_summary[] = {
     {"steps", "", "of time"},
     {"time_ns", "ns", "simulated"},
     {"mass_error", "", "relative to the mass at the start"},
-    {"energy_unaccounted", "", "what no account of the ledger explains, of the kinetic energy at the start"},
+    {"energy_unaccounted", "", "what no account of the ledger explains, of the kinetic energy at the start; null "
+                              "with MPI"},
     {"floor_hits", "", "times the floor of the bond's threshold acted"},
     {"bond_increments", "", "times a bond grew"},
     {"cpu_seconds", "s", "of the run, without the writing of files"},
@@ -168,6 +169,85 @@ static const key particles_pairs[] = {
     {"held_nodes", "", "... where the hold gave force in the last step"},
     {"contact_um2", "um2", "surface of both that touched, in the model"},
     {"bonded_um2", "um2", "... that bonded"}};
+
+static const key critical_summary[] = {
+    {"critical_velocity_m_s", "m/s", "lowest that bonded: median over the positions of the grid; null where nothing "
+                                     "bonded at half of them or more"},
+    {"not_bonded_below_m_s", "m/s", "at the middle position, the velocity tried next below, which did not bond"},
+    {"lowest_m_s", "m/s", "critical velocity at the position where it is lowest"},
+    {"highest_m_s", "m/s", "... at that where it is highest"},
+    {"uncertainty_m_s", "m/s", "how far the answer may be off: root of the sum of the squares of the next three"},
+    {"uncertainty_of_bracket_m_s", "m/s", "half the distance to not_bonded_below_m_s"},
+    {"uncertainty_of_position_m_s", "m/s", "half the distance from lowest to highest"},
+    {"uncertainty_of_grid_m_s", "m/s", "what --grids 2 moves it by; null with one grid"},
+    {"coarser_grid_m_s", "m/s", "the critical velocity on that other grid; not there with one grid"},
+    {"offsets_without_bond", "", "positions where nothing bonded at any velocity"},
+    {"pbcp_percent", "%", "bonded share at the critical velocity of the middle position"},
+    {"v_rest_m_s", "m/s", "mean rebound velocity there"},
+    {"runs", "", "impacts of the search"},
+    {"runs_made_now", "", "... that were not kept from before"},
+    {"cpu_seconds_now", "s", "of these"},
+    {"by_offset", "", "for each position of the grid, by its height in um:"},
+    {"grid_offset_0_um", "", "one of them"},
+    {"critical_velocity_m_s", "m/s", "there"},
+    {"not_bonded_below_m_s", "m/s", "... the velocity tried next below"},
+    {"pbcp_percent", "%", "... bonded share at the critical velocity"},
+    {"v_rest_m_s", "m/s", "... mean rebound velocity at it"},
+    {"not_bonded_above", "", "velocities above that did not bond"},
+    {"options", "", "those of the search, by their names"}};
+
+static const key critical_curve[] = {
+    {"grid_offset_um", "um", "height of a grid plane over the interface"},
+    {"velocity_m_s", "m/s", "of the impact"},
+    {"bonds", "", "1: it counts as bonded"},
+    {"pbcp_percent", "%", "bonded share of the surface that touched"},
+    {"abp", "", "mean D of it"},
+    {"contacted_points", "", "surface points with D > 0"},
+    {"v_rest_m_s", "m/s", "mean upward velocity of the particle's points up to 60 m/s at the end; of all of them where "
+                          "more than half of its mass is faster"},
+    {"v_mean_m_s", "m/s", "... of all of them, by mass"},
+    {"v_late_m_s", "m/s", "... the same over the last eighth of the time"},
+    {"substrate_drift_m_s", "m/s", "mean upward velocity of the substrate"},
+    {"held_pairs", "", "pairs of nodes, or markers, that the bond held in the last step"},
+    {"held_late_share", "", "of the steps of the last eighth, those in which any was held"},
+    {"flattening", "", "share of its height that the particle lost"},
+    {"eps_mean", "", "mean plastic strain of the particle"},
+    {"plastic_energy_density_MPa", "MPa", "mean plastic work of the particle"},
+    {"temperature_max_K", "K", "of the hottest point"},
+    {"ejected_mass_share", "", "of the particle's mass, what is faster than 60 m/s"},
+    {"rim_um", "um", "height of the substrate's rim over its face"},
+    {"sheared_mass_share", "", "mass strained beyond 3, of both bodies, over the particle's"},
+    {"contact_radius_um", "um", "median distance from the axis of the particle's points with D > 0"},
+    {"bonded_radius_um", "um", "... with D >= 1; 0 without any"},
+    {"bonded_inner_share", "", "of the bonded points, by mass, those within half the contact's radius"},
+    {"energy_unaccounted", "", "what no account of the ledger explains, of the energy at the start"},
+    {"end_ns", "ns", "simulated"},
+    {"steps", "", "of time"},
+    {"points", "", "material points of the model"}};
+
+static const key ranks_totals[] = {
+    {"ranks", "", "how many there were"},
+    {"steps", "", "of time"},
+    {"cuts_moved", "", "times the slabs were cut anew"},
+    {"points", "", "material points of the scene, each counted once"},
+    {"ghosts", "", "copies of them on other ranks"},
+    {"mass_ng", "ng", "of all points"},
+    {"momentum_x_ng_m_s", "ng m/s", "of all points"},
+    {"momentum_y_ng_m_s", "ng m/s", ""},
+    {"momentum_z_ng_m_s", "ng m/s", "... upwards"},
+    {"kinetic_pJ", "pJ", "energy of all points"},
+    {"internal_pJ", "pJ", "energy of all points"}};
+
+static const key ranks_table[] = {
+    {"rank", "", "its number"},
+    {"first_cell", "", "of its slab, along the direction that is cut"},
+    {"end_cell", "", "... the first one behind it"},
+    {"points", "", "that it owns"},
+    {"ghosts", "", "copies of its neighbours' points"},
+    {"bytes", "B", "memory of its world"},
+    {"cpu_s", "s", "processor time"},
+    {"waited_s", "s", "... of messages, by the clock"},
+    {"sent_bytes_per_step", "B", "to its neighbours"}};
 
 static const key spray_summary[] = {
     {"injected", "", "particles that left the nozzle"},
@@ -237,9 +317,13 @@ int main(void)
     SECTION("taylor: profile.csv", taylor_profile, 0);
     SECTION("pull: summary.json", pull_summary, 0);
     SECTION("pull: pull.csv", pull_table, 0);
-    SECTION("two_particles, many_particles: summary.json", particles_summary, 0);
-    SECTION("two_particles, many_particles: particles.csv", particles_table, 0);
-    SECTION("two_particles, many_particles: pairs.csv", particles_pairs, 0);
+    SECTION("two_particles, many_particles, mpi/many_particles: summary.json", particles_summary, 0);
+    SECTION("two_particles, many_particles, mpi/many_particles: particles.csv", particles_table, 0);
+    SECTION("two_particles, many_particles, mpi/many_particles: pairs.csv", particles_pairs, 0);
+    SECTION("mpi/many_particles: totals.json", ranks_totals, 0);
+    SECTION("mpi/many_particles: ranks.csv", ranks_table, 0);
+    SECTION("critical_velocity: summary.json", critical_summary, 0);
+    SECTION("critical_velocity: curve.csv", critical_curve, 0);
     SECTION("spray: summary.json", spray_summary, 0);
     SECTION("spray: history.csv", spray_past, 1);
     SECTION("spray: impacts.csv", spray_impacts, 0);

@@ -2,9 +2,9 @@
 
      mpirun -n 4 build/mpi/many_particles --count 10          with the options of build/many_particles
 
-   The same fates and tables as the serial program writes; sums of mass, momentum and energy agree to round-off, whatever
-   the number of ranks. Every rank builds the whole scene once and keeps its part, one rank after the other; the last step
-   is made by rank 0 alone, on the whole. Contact at nodes only (--method thesis). SPDX-License-Identifier: MIT */
+   The same fates and tables as the serial program writes; sums of mass, momentum and energy agree to round-off,
+   whatever the number of ranks. Every rank builds the whole scene once and keeps its part, one rank after the other;
+   the last step is made by rank 0 alone, on the whole. Contact at nodes only (--method thesis). SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "particles_case.h"
 #include "ranks_files.h"
@@ -119,7 +119,8 @@ static int run(many *m, particles_case *q, impact *s)
     output_start(&q->out, w);
     m->saved = MPI_Wtime();
     while (status > 0 && w->steps < s->steps - 1) {
-        if (output_due(&q->out, w, s->steps) && !ranks_frame(&m->r, w, q->out.folder, q->out.frame++, 1e3 * (double)w->time))
+        if (output_due(&q->out, w, s->steps) &&
+            !ranks_frame(&m->r, w, q->out.folder, q->out.frame++, 1e3 * (double)w->time))
             return 0;
         if ((status = goes_on(m, q, s)) <= 0) break;
         step(m, s);

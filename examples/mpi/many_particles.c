@@ -4,7 +4,8 @@
 
    The same fates and tables as the serial program writes; sums of mass, momentum and energy agree to round-off,
    whatever the number of ranks. Every rank builds the whole scene once and keeps its part, one rank after the other;
-   the last step is made by rank 0 alone, on the whole. Contact at nodes only (--method thesis). SPDX-License-Identifier: MIT */
+   the last step is made by rank 0 alone, on the whole. Contact at nodes only (--method thesis).
+   SPDX-License-Identifier: MIT */
 #define MPM_IMPLEMENTATION
 #include "particles_case.h"
 #include "ranks_files.h"
@@ -240,7 +241,8 @@ static int carry_out(int argc, char **argv, int rank)
     m.checkpoint = 60;
     n = particles_many_options(&q, &places, o);
     for (k = 0; k < 3; k++) option_drop(o, &n, serial[k]);
-    option_add(o, &n, "balance", OPTION_INTEGER, &m.balance, "steps between looks at the balance of the slabs; 0: never");
+    option_add(o, &n, "balance", OPTION_INTEGER, &m.balance,
+               "steps between looks at the balance of the slabs; 0: never");
     option_add(o, &n, "uneven", OPTION_REAL, &m.uneven, "points of the fullest slab over the mean at which cuts move");
     option_add(o, &n, "checkpoint", OPTION_REAL, &m.checkpoint, "seconds between checkpoints; 0: none");
     option_add(o, &n, "resume", OPTION_FLAG, &m.resume, "go on from a checkpoint, of any number of ranks");

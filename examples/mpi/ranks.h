@@ -2,8 +2,8 @@
 
    A rank owns the points in its slab and carries those of its neighbours within `halo` cells beside it, the ghosts. It
    steps them all by itself. Sums at the nodes that its own points touch are then complete, as is everything made of
-   them: contact, bonds, the velocities of MUSL. After the step every point near a cut is sent, as it now is, by the rank
-   that owned it, and takes the place of the ghosts. So each point's state is always that of one rank.
+   them: contact, bonds, the velocities of MUSL. After the step every point near a cut is sent, as it now is, by the
+   rank that owned it, and takes the place of the ghosts. So each point's state is always that of one rank.
 
      MPI_Init(..); build the whole scene w; ranks_begin(&r, MPI_COMM_WORLD, &w, message, n);    w is now a part
      each step:  mpm_step(&w, dt); ranks_exchange(&r, &w);  now and then ranks_balance(&r, &w);
@@ -137,10 +137,10 @@ static inline int ranks_carries(const ranks *r, int rank, int32_t cell)
     return cell >= r->cut[rank] - r->halo && cell < r->cut[rank + 1] + r->halo;
 }
 
-/* How far beside a cut points matter for those at it. MUSL's velocities at the nodes that these touch are made of points
-   whose new velocities need whole sums at their nodes, and contact with a bond there needs the D of points further out,
-   which grows where these are at contact nodes: a chain of nodes, points, nodes, points, nodes, points. With linear
-   functions and a layer less an impact is wrong in the eighth digit. */
+/* How far beside a cut points matter for those at it. MUSL's velocities at the nodes that these touch are made of
+   points whose new velocities need whole sums at their nodes, and contact with a bond there needs the D of points
+   further out, which grows where these are at contact nodes: a chain of nodes, points, nodes, points, nodes, points.
+   With linear functions and a layer less an impact is wrong in the eighth digit. */
 static inline int32_t ranks_halo(mpm_basis basis)
 {
     static const int32_t cells[MPM_BASES] = {3, 7, 7, 9};

@@ -160,8 +160,8 @@ static inline int ranks_saved(const char *folder, int *pieces)
     return strtol(set, NULL, 10) == 1;
 }
 
-/* Every rank writes its piece of the set that is not in use; when all are there, ranks.json names it. Until then the one
-   before is good. All ranks together. Returns 1, or 0 after a message. */
+/* Every rank writes its piece of the set that is not in use; when all are there, ranks.json names it. Until then the
+   one before is good. All ranks together. Returns 1, or 0 after a message. */
 static inline int ranks_save(const ranks *r, const mpm_world *w, const char *folder, const char *text, int64_t frame)
 {
     ranks_heap mine = {NULL, 0, 0};
@@ -188,10 +188,10 @@ static inline int ranks_save(const ranks *r, const mpm_world *w, const char *fol
         memcpy(mine.data + (size_t)mine.count * r->record, r->gone.data, (size_t)r->gone.count * r->record);
     blob[0] = mpm_blob_of("state", &s, sizeof s);
     blob[1] = mpm_blob_of("records", mine.data, (size_t)(mine.count + r->gone.count) * r->record);
-    if (ok)
-        ok = mpm_io_checkpoint_write(ranks_piece_path(folder, set, r->rank, path, sizeof path), text, blob, 2, &fault) >=
-                 0 ||
-             report(&fault, path);
+    if (ok) {
+        ranks_piece_path(folder, set, r->rank, path, sizeof path);
+        ok = mpm_io_checkpoint_write(path, text, blob, 2, &fault) >= 0 || report(&fault, path);
+    }
     free(mine.data);
     if (!ranks_all(r, ok)) return 0;
     if (r->rank > 0) return 1;

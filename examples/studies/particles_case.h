@@ -545,7 +545,8 @@ static inline int particles_page(const impact *s, const particles_case *q, const
 }
 
 /* The end table; `files` that were written beside the tables. */
-static inline void particles_print(const particles_case *q, const particle_report *r, const impact *s, const char *files)
+static inline void particles_print(const particles_case *q, const particle_report *r, const impact *s,
+                                   const char *files)
 {
     const int64_t shown = q->count < 40 ? q->count : 40;
     int64_t k;
@@ -770,7 +771,8 @@ static inline int particles_many_options(particles_case *q, particles_random *p,
 /* Checks the options and draws the places. Returns 1, or 0 with a message. */
 static inline int particles_many_place(particles_case *q, particles_random *p, char *message, size_t n)
 {
-    if (!case_wants(q->count >= 1 && q->count <= PARTICLES, "count", (double)q->count, "must be 1 .. 500", message, n) ||
+    if (!case_wants(q->count >= 1 && q->count <= PARTICLES, "count", (double)q->count, "must be 1 .. 500", message,
+                    n) ||
         !particles_check(q, message, n) ||
         !case_wants(p->spread > 0 && p->spread < 1e4, "spread", p->spread, "must be > 0 um", message, n) ||
         !case_wants(p->height >= 0 && p->height < 1e4, "height", p->height, "must be >= 0 um", message, n) ||

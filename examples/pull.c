@@ -406,8 +406,9 @@ static int carry_out(int argc, char **argv)
         c.cell = 1;
         c.spacing = 0.25;
     }
-    parsed = options_parse(argc, argv, "A metal particle hits a plate and is drawn off it again: the bond's strength.",
-                           options, n);
+    parsed = options_parse(argc, argv, "A metal particle hits a plate and is drawn off it again: the bond's strength.\n"
+                           "Writes summary.json, pull.csv, pull.png, history.csv and history.png into the output\n"
+                           "folder.", options, n);
     if (parsed) return parsed < 0 ? 1 : 0;
     impact_complete(&c);
     if (!check(&o, message, sizeof message) || !restart_check(&j.again, message, sizeof message) ||

@@ -699,7 +699,9 @@ static mpm_status write_all(mpm_spray *s, const settings *o, const records *of, 
 
 static int carry_out(int argc, char **argv)
 {
-    static const char about[] = "Powder from a nozzle to a target: flight, collisions, deposition.";
+    static const char about[] = "Powder from a nozzle to a target: flight, collisions, deposition.\n"
+                                "Writes summary.json, impacts.csv, history.csv, history.png, plume.png, deposit.png,\n"
+                                "spray.pvd (ParaView) with its frames and checkpoint.bin into the output folder.";
     static char note[TEXT_ROOM];
     settings o = settings_default();
     option row[OPTION_COUNT];

@@ -18,9 +18,9 @@ static int carry_out(int argc, char **argv)
     parsed = options_parse(argc, argv,
                            "Particles at random places and heights. --substrate-diameter 0: spread and one particle;\n"
                            "--time 0: the fall from the full height and 40 ns. Writes report.html, particles.csv,\n"
-                           "pairs.csv, summary.json, particles.pvd (ParaView) and frames; run again with the same\n"
-                           "options after an interruption, it goes on; a finished scene is not repeated: delete the\n"
-                           "folder for that.",
+                           "pairs.csv, summary.json, history.csv, history.png, film.png, particles.pvd (ParaView)\n"
+                           "and frames; run again with the same options after an interruption, it goes on; a\n"
+                           "finished scene is not repeated: delete the folder for that.",
                            o, n);
     if (parsed) return parsed < 0;
     if (!particles_many_place(&q, &places, message, sizeof message)) return !complain(message);

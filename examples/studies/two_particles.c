@@ -25,9 +25,10 @@ static int carry_out(int argc, char **argv)
     option_add_word(o, &n, "leads", &leads, "top|bottom",
                     "whose surface sets the (ranked) normal between the two, and is number 1 in the report");
     parsed = options_parse(argc, argv, "Two particles, one after the other, on one spot or beside it.\n"
-                           "Writes report.html, particles.csv, pairs.csv, summary.json, particles.pvd (ParaView) and\n"
-                           "frames; run again with the same options after an interruption, it goes on; a finished\n"
-                           "scene is not repeated: delete the folder for that.", o, n);
+                           "Writes report.html, particles.csv, pairs.csv, summary.json, history.csv, history.png,\n"
+                           "film.png, particles.pvd (ParaView) and frames; run again with the same options\n"
+                           "after an interruption, it goes on; a finished scene is not repeated: delete the folder\n"
+                           "for that.", o, n);
     if (parsed) return parsed < 0;
     particles_complete(&q);
     if (!particles_check(&q, message, sizeof message) ||

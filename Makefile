@@ -169,10 +169,10 @@ spray-study: build/spray_study ## source B's results again: a quarter of an hour
 
 # Writes the tables of docs/prediction.md, and docs/data; finished runs are kept in build/predict.
 POSITIONS ?= 4
-predict: build/impact build/critical_velocity ## contact on surfaces, whatever the grid, whatever the size: an hour and a half of CPU, resumable; POSITIONS=4
+predict: build/impact build/critical_velocity ## docs/prediction.md again: critical velocities by contact on surfaces; an hour and a half, resumable; POSITIONS=4
 	sh examples/studies/prediction.sh $(POSITIONS) $(JOBS)
 
-embedded: ## an impact on a Cortex-M4, 128 KiB of flash, 256 KiB of RAM, under qemu (half a minute), beside the one here
+embedded: ## an impact on a Cortex-M4 under qemu beside the same one here (half a minute)
 	@sh examples/embedded/run.sh "$(CC)"
 
 # fuzz needs clang with libFuzzer; hard takes what it finds of tools and skips the others. CHECKS="gcc kill": these only.
@@ -181,7 +181,7 @@ fuzz: ## random inputs for everything that reads or describes: SECONDS=20 for ea
 	@CC="$(CC)" sh tests/fuzz/run.sh $(SECONDS) $(JOBS)
 
 .PHONY: hdf5
-hdf5: ## builds build/impact_hdf5 and many_particles_hdf5, which know --hdf5, and has their files read by h5py, VTK, ParaView
+hdf5: ## build/impact_hdf5 and many_particles_hdf5, which know --hdf5; h5py, VTK, ParaView read their files
 	@sh tests/hdf5/run.sh "$(CC)" "$(MAKE)" "$(WITH_HDF5)" "$(HDF5_LIBS)"
 
 KILLS ?= 200
@@ -219,12 +219,12 @@ gallery: build/impact build/taylor build/spray build/two_particles build/many_pa
 	sh -eux build/gallery/commands.sh
 	@sh tests/79_gallery.sh >build/gallery/checks || { grep '^not ok' build/gallery/checks; exit 1; }
 
-.PHONY: report-page web-test
+.PHONY: report-page report-test
 # The page of report.h: changes of web/report get into the programs by this.
-report-page: ## web/report as the C header examples/report_page.h, which is committed
+report-page: ## after a change of web/report: puts it into examples/report_page.h
 	sh web/report/embed.sh >examples/report_page.h.part && mv examples/report_page.h.part examples/report_page.h
 
-web-test: build/impact build/critical_velocity ## report.html in headless Chromium, with pictures of it in build/report-web
+report-test: build/impact build/critical_velocity ## report.html (of runs) in headless Chromium, with pictures of it in build/report-web
 	@sh tests/web/report.sh
 
 # MPI: a world cut into slabs, a rank each. Without mpicc there is nothing to build.
@@ -247,7 +247,7 @@ LIVE_PAGE = index.html live.css engine.js worker.js choices.js curves.js impact.
 build/web/live.wasm: web/live/live.c web/live/build.sh $(HEADERS) $(wildcard examples/*.h)
 	@sh web/live/build.sh "$(WASM_CC)"
 
-web: build/web/live.wasm ## the live page, for a browser: build/web/index.html; WASM_CC=clang
+web: build/web/live.wasm ## the live page, which computes in a browser: build/web/index.html; WASM_CC=clang
 	@mkdir -p build/web/data
 	@cp $(addprefix web/live/,$(LIVE_PAGE)) build/web
 	@cp docs/data/method_*.png build/web/data
@@ -255,7 +255,7 @@ web: build/web/live.wasm ## the live page, for a browser: build/web/index.html; 
 	@mv build/web/method.html.part build/web/method.html
 	@echo "build/web/index.html: open it, or python3 -m http.server -d build/web"
 
-live-test: build/impact build/tests/live_digits ## the live page beside the desktop, and in headless Chromium
+live-test: build/impact build/tests/live_digits ## the live page in headless Chromium, and its numbers beside those of the desktop
 	@sh tests/web/live.sh "$(MAKE)" "$(WASM_CC)"
 
 build/tests/live_digits: tests/web/live_digits.c build/mpm.o
@@ -267,7 +267,7 @@ keys: ## docs/keys.md: what the files of the programs hold, with units
 	$(CC) $(STRICT) $(INCLUDE) docs/keys.c -o build/keys $(LDFLAGS) -lm
 	build/keys >docs/keys.md.part && mv docs/keys.md.part docs/keys.md
 
-footprint: ## what each header costs - code, stack, memory, compile time: the table in README.md (5 minutes)
+footprint: ## what each header costs - code, stack, memory, compile time: its table in docs/performance.md (5 minutes)
 	sh bench/footprint.sh "$(CC)"
 
 # What a package manager takes: the headers, mpm.c for whoever compiles once, the licence, a pkg-config file.

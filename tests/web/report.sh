@@ -1,7 +1,7 @@
 #!/bin/sh
-# report.html in headless Chromium, driven by node: `make web-test`. Runs of each kind into build/report-web, pictures of
-# their pages into build/report-web/pictures. Skipped, with the reason, where Chromium or node is missing. Run from the
-# top folder.
+# report.html in headless Chromium, driven by node: `make report-test`. Runs of each kind into build/report-web,
+# pictures of their pages into build/report-web/pictures. Skipped, with the reason, where Chromium or node is missing.
+# Run from the top folder.
 set -u
 dir=build/report-web
 browser=${CHROMIUM:-$(command -v chromium || command -v chromium-browser || command -v google-chrome)}

@@ -1,9 +1,11 @@
 #!/bin/sh
-# sh bench/footprint.sh CC: what each header costs - code, stack, memory of a point, compile time - as a table of the
-# README, between its two marks. Code and stack are the header's own; compiling it means compiling mpm.h with it.
+# sh bench/footprint.sh CC: what each header costs - code, stack, memory of a point, compile time - as a table of
+# docs/performance.md, between its two marks. Code and stack are the header's own; compiling it means compiling mpm.h
+# with it.
 set -eu
 cc=${1:-cc}
 dir=build/footprint
+page=docs/performance.md
 rm -rf "$dir"
 mkdir -p "$dir"
 flags="-std=c99 -ffp-contract=off -I."
@@ -113,11 +115,11 @@ table >"$dir/table.md"
 cat "$dir/table.md"
 begin='<!-- made by make footprint: begin -->'
 end='<!-- made by make footprint: end -->'
-if grep -qx "$begin" README.md && grep -qx "$end" README.md; then
+if grep -qx "$begin" "$page" && grep -qx "$end" "$page"; then
     awk -v b="$begin" -v e="$end" -v t="$dir/table.md" '
         $0 == e { while ((getline line <t) > 0) print line; inside = 0 }
         !inside
-        $0 == b { inside = 1 }' README.md >README.md.part && mv README.md.part README.md
+        $0 == b { inside = 1 }' "$page" >"$page.part" && mv "$page.part" "$page"
 else
-    echo "README.md has no line '$begin' or '$end': the table was not put in"
+    echo "$page has no line '$begin' or '$end': the table was not put in"
 fi

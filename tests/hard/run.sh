@@ -1,7 +1,7 @@
 #!/bin/sh
 # sh tests/hard/run.sh KILLS JOBS [CHECK...]: what goes wrong outside of the library, and what other tools say of it,
 # JOBS checks at a time. Each gives one line, "name: ok", "found: ...", or "skip: reason"; the lines of all checks, with
-# the tools' versions, become docs/quality.md. Exit 1 if anything was found.
+# the tools' versions, become the table of docs/quality.md. Exit 1 if anything was found.
 set -u
 dir=build/hard
 flags="-std=c99 -ffp-contract=off -DMPM_NO_INLINE -I. -Iexamples -Iexamples/studies -Itests"
@@ -207,10 +207,11 @@ done
     echo
     echo "Written by \`make hard\` on $(uname -s) $(uname -m), for mpm.h" \
         "$(sed -n 's/^.define MPM_VERSION "\(.*\)"/\1/p' mpm.h)."
-    echo "\`make fuzz\` feeds random inputs to the targets of tests/fuzz; \`make coverage\` counts lines and branches."
     echo
     echo "| what | result | tool |"
     echo "|---|---|---|"
     for check in $all; do cat $dir/$check.line; done
+    echo
+    sed -n '/^## Other targets$/,$p' docs/quality.md # written by hand: it stays
 } >docs/quality.md.part && mv docs/quality.md.part docs/quality.md || exit 1
 exit "${bad:-0}"

@@ -235,8 +235,8 @@ static const key ranks_totals[] = {
     {"momentum_x_ng_m_s", "ng m/s", "of all points"},
     {"momentum_y_ng_m_s", "ng m/s", ""},
     {"momentum_z_ng_m_s", "ng m/s", "... upwards"},
-    {"kinetic_pJ", "pJ", "energy of all points"},
-    {"internal_pJ", "pJ", "energy of all points"}};
+    {"kinetic_pJ", "pJ", "kinetic energy of all points"},
+    {"internal_pJ", "pJ", "internal energy of all points"}};
 
 static const key ranks_table[] = {
     {"rank", "", "its number"},

@@ -213,7 +213,7 @@ api: ## the reference of all public names, from the headers' comments: build/api
 
 # The commands stand in the page, so that it shows what is run.
 .PHONY: gallery
-gallery: build/impact build/taylor build/spray build/two_particles build/many_particles ## the pictures of docs/gallery.md again, by the commands there (a minute and a half)
+gallery: build/impact build/taylor build/spray build/two_particles build/many_particles ## the pictures of docs/gallery.md again, by the commands there (two minutes)
 	@mkdir -p build/gallery
 	sed -n 's/^    //p' docs/gallery.md >build/gallery/commands.sh
 	sh -eux build/gallery/commands.sh

@@ -52,7 +52,7 @@
      MPM_MALLOC(n), MPM_FREE(p)  IMPL  used only where the caller passes NULL for memory.
      MPM_BLOCK            IMPL    points per constitutive block (default 64), and most points that a sweep or a
                                   material treats together. 8 is right for small machines: the same bits, a
-                                  tenth slower, frames of 4 KiB (float, -Os) instead of 14.
+                                  tenth slower, frames of 5 KiB (float, -Os) instead of 15.
      MPM_NO_INLINE        IMPL    the kernels are not inlined by force: slower, but quick to compile.
      MPM_NO_WIDE          IMPL    no vector types of gcc and clang: slower, the same bits.
      MPM_FINITE_MATH      GLOBAL  compile in spite of -ffinite-math-only, which -ffast-math and -Ofast

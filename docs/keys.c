@@ -307,9 +307,8 @@ int main(void)
     printf("# What the files hold\n\n"
            "Made by `make keys`. Every key of the programs' `summary.json` and every column of their tables, in the\n"
            "order in which they stand there. Before all keys stands `mpm_version`; what is not finite is null. A\n"
-           "summary ends with the options of the run, so that it can be repeated. `history.csv` has some two hundred\n"
-           "rows of a run and no line of comment: any reader of CSV takes it as it is. The other tables begin with\n"
-           "such a line, after `#`.\n");
+           "summary ends with the options of the run, so that it can be repeated. Tables have a line of names and no\n"
+           "comment: any reader of CSV takes them as they are. `history.csv` has some two hundred rows of a run.\n");
     SECTION("impact: summary.json", impact_summary, 0);
     SECTION("impact, pull, two_particles, many_particles: history.csv", impact_past, 1);
     SECTION("taylor: summary.json", taylor_summary, 0);

@@ -234,7 +234,7 @@ static int write_table(const job *j)
     int k;
     if (mpm_io_csv_begin(&table, file_in(j->o->folder, "pull.csv", path, sizeof path),
                          "time_ns,way_um,force_uN,grip_force_uN,stress_MPa,nodes_met,nodes_bonded,nodes_held",
-                         "pull: forces of the whole particle", &fault) < 0)
+                         NULL, &fault) < 0)
         return report(&fault, path);
     for (i = 0; i < j->at.rows; i++)
         for (k = 0; k < COLUMNS; k++) {

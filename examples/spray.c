@@ -425,7 +425,7 @@ static void note_series(files *past, const settings *o, const mpm_spray *s, int6
     past->every = o->frames > 0 ? every : 0;
 }
 
-#define IMPACT_HEAD 2 /* lines before the rows */
+#define IMPACT_HEAD 1 /* lines before the rows */
 
 /* Opens the table of impacts in a folder if its rows are those that the checkpoint knows; f then stands at the first.
    Returns 1; 0 if there is no such table, -1 after a message if it cannot be read. */
@@ -462,7 +462,7 @@ static FILE *earlier_impacts(const settings *o, const files *past, int64_t rows)
 
 /* Begins impacts.csv with the rows of the first touches that the checkpoint has counted. Returns 1, or 0 after a
    message; then there is no new table. */
-static int begin_impacts(mpm_io_csv *csv, const settings *o, const mpm_spray *s, const files *past, const char *note)
+static int begin_impacts(mpm_io_csv *csv, const settings *o, const mpm_spray *s, const files *past)
 {
     const int64_t rows = s->tally.first_hits;
     char path[PATH_BYTES], line[1024];
@@ -470,7 +470,7 @@ static int begin_impacts(mpm_io_csv *csv, const settings *o, const mpm_spray *s,
     mpm_fault fault;
     int64_t k = 0;
     if (rows > 0 && !(old = earlier_impacts(o, past, rows))) return 0;
-    if (mpm_io_csv_begin(csv, file_in(o->out, "impacts.csv", path, sizeof path), IMPACT_COLUMNS, note, &fault) < 0)
+    if (mpm_io_csv_begin(csv, file_in(o->out, "impacts.csv", path, sizeof path), IMPACT_COLUMNS, NULL, &fault) < 0)
         report(&fault, path);
     else
         for (; k < rows && fgets(line, sizeof line, old); k++) mpm_io_put(&csv->file, line);
@@ -483,14 +483,13 @@ static int begin_impacts(mpm_io_csv *csv, const settings *o, const mpm_spray *s,
 
 /* Begins table and series where the run before ended; what there is stays until all of it is known to be good.
    Returns 1, or 0 after a message. */
-static int begin_files(mpm_io_csv *csv, const settings *o, const mpm_spray *s, files *past, int64_t steps,
-                       const char *note)
+static int begin_files(mpm_io_csv *csv, const settings *o, const mpm_spray *s, files *past, int64_t steps)
 {
     const int64_t every = steps_per_frame(o, steps);
     mpm_fault fault;
     if (mpm_io_make_directory(o->out, &fault) < 0) return report(&fault, o->out);
     if (o->frames > 0 && !has_frames(o, s, past, every)) return 0;
-    if (!begin_impacts(csv, o, s, past, note)) return 0;
+    if (!begin_impacts(csv, o, s, past)) return 0;
     if (o->frames > 0 && !begin_series(o, s, every)) return mpm_io_csv_drop(csv), 0;
     note_series(past, o, s, every);
     return 1;
@@ -597,7 +596,7 @@ static mpm_status save(mpm_spray *s, const settings *o, const records *r, mpm_fa
     if (status >= 0) status = note_impacts(r->past, o, s, fault);
     file_in(o->out, "checkpoint.bin", path, sizeof path);
     if (status >= 0) status = write_checkpoint(path, s, r->past, r->history, r->row, r->rows, fault);
-    if (status < 0 || begin_impacts(r->impacts, o, s, r->past, r->note)) return status;
+    if (status < 0 || begin_impacts(r->impacts, o, s, r->past)) return status;
     return mpm_fail(fault, MPM_ERR_FILE, "impacts.csv: cannot be begun again", 0, -1);
 }
 
@@ -738,7 +737,7 @@ static int carry_out(int argc, char **argv)
         return 1;
     }
     if (spray_columns_init(&columns, (size_t)d.capacity)) return fprintf(stderr, "error: no memory\n"), 1;
-    if (!begin_files(&impacts, &o, &s, &past, steps, note)) return 1;
+    if (!begin_files(&impacts, &o, &s, &past, steps)) return 1;
     of.impacts = &impacts;
     of.past = &past;
     of.history = &past_rows;

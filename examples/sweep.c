@@ -641,7 +641,7 @@ static int plan_write(const sweep *s)
     else same = 0;
     table_free(&old);
     if (same) return 1;
-    mpm_io_csv_begin(&csv, path, "task,description", "build/sweep", &fault);
+    mpm_io_csv_begin(&csv, path, "task,description", NULL, &fault);
     for (k = 0; k < s->tasks; k++) {
         mpm_io_csv_integer(&csv, k);
         mpm_io_csv_text(&csv, s->task[k].key);
@@ -817,7 +817,7 @@ static int collect(sweep *s)
     if (!columns) return !complain("no memory for the collection");
     states_look(s);
     finished = states_count(s, STATE_FINISHED);
-    mpm_io_csv_begin(&csv, file_in(s->folder, "results.csv", path, sizeof path), columns, "build/sweep", &fault);
+    mpm_io_csv_begin(&csv, file_in(s->folder, "results.csv", path, sizeof path), columns, NULL, &fault);
     free(columns);
     for (k = 0; k < s->tasks; k++) {
         for (c = 0; c < s->table.columns; c++) mpm_io_csv_text(&csv, table_cell(&s->table, k + 1, c));

@@ -119,7 +119,7 @@ static int write_profile(const taylor *s, const taylor_row *row, const output *o
     mpm_real value[3];
     long k;
     file_in(o->folder, "profile.csv", path, sizeof path);
-    mpm_io_csv_begin(&t, path, "start_z_mm,z_mm,radius_mm", "taylor: side of the bar", &fault);
+    mpm_io_csv_begin(&t, path, "start_z_mm,z_mm,radius_mm", NULL, &fault);
     for (k = 0; k < taylor_rows(s); k++) {
         value[0] = (mpm_real)row[k].start;
         value[1] = (mpm_real)row[k].z;

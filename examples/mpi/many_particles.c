@@ -154,7 +154,7 @@ static int accounts(const many *m, const particles_case *q, const mpm_world *w)
     if (m->r.rank > 0) return 1;
     mpm_io_csv_begin(&c, file_in(q->out.folder, "ranks.csv", path, sizeof path),
                      "rank,first_cell,end_cell,points,ghosts,bytes,cpu_s,waited_s,sent_bytes_per_step",
-                     "what each rank had to do", &fault);
+                     NULL, &fault);
     for (k = 0; k < m->r.size; k++) {
         mpm_io_csv_integer(&c, k);
         for (f = 0; f < 8; f++) mpm_io_csv_real(&c, (mpm_real)all[8 * k + f]);

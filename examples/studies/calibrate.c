@@ -47,7 +47,7 @@ static int write_tasks(const calibration *q, const study *s, mpm_fault *fault)
                      calibration_surface(q) ? "task,diameter_um,velocity_m_s,adhesion_critical_J_m2,adhesion_J_m2,"
                                               "pbcp_percent,restitution_ratio,v_late_m_s,bonds"
                                             : "task,diameter_um,velocity_m_s,gc_J_m2,gdot_J_m2_us,pbcp_percent,"
-                                              "restitution_ratio,v_late_m_s,bonds", program, fault);
+                                              "restitution_ratio,v_late_m_s,bonds", NULL, fault);
     for (size = 0; size < 2; size++)
         for (k = 0; k < calibration_nodes(q); k++) {
             const impact_case c = calibration_case(q, size, k);

@@ -58,7 +58,7 @@ static int write_curve(const request *q, const critical_curve *curve, mpm_fault 
         strcat(columns, ",");
         strcat(columns, study_name[v]);
     }
-    mpm_io_csv_begin(&t, file_in(q->s.folder, "curve.csv", path, sizeof path), columns, program, fault);
+    mpm_io_csv_begin(&t, file_in(q->s.folder, "curve.csv", path, sizeof path), columns, NULL, fault);
     for (k = 0; k < curve->runs; k++) {
         mpm_io_csv_real(&t, (mpm_real)curve->run[k].offset);
         mpm_io_csv_real(&t, (mpm_real)curve->run[k].velocity);

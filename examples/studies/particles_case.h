@@ -380,8 +380,7 @@ static inline int particles_table(const particles_case *q, const particle_report
     int k;
     mpm_io_csv_begin(&t, file_in(q->out.folder, "particles.csv", path, sizeof path),
                      "particle,x_um,y_um,z_um,fate,pbcp_percent,contacted_points,bonded_points,bonded_nodes,"
-                     "v_z_m_s,v_along_m_s,ejected_mass_share,contact_um2,bonded_um2,height_um", "one row per particle",
-                     &fault);
+                     "v_z_m_s,v_along_m_s,ejected_mass_share,contact_um2,bonded_um2,height_um", NULL, &fault);
     for (a = 0; a < q->count; a++) {
         mpm_io_csv_integer(&t, a);
         for (k = 0; k < 3; k++) mpm_io_csv_real(&t, (mpm_real)q->center[a][k]);
@@ -409,7 +408,7 @@ static inline int particles_pairs(const impact *s, const particles_case *q)
     int32_t a, b;
     mpm_io_csv_begin(&t, file_in(q->out.folder, "pairs.csv", path, sizeof path),
                      "a,b,pbcp_percent,contacted_points,bonded_points,bonded_nodes,held_nodes,contact_um2,bonded_um2",
-                     "surfaces between two bodies; the last body is the substrate", &fault);
+                     NULL, &fault);
     for (a = 0; a < (int32_t)q->count; a++)
         for (b = a + 1; b <= (int32_t)q->count; b++) {
             const particles_meeting m = particles_meet(s, a, b);

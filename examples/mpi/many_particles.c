@@ -43,11 +43,23 @@ static void describe(many *m, const particles_case *q, const particles_random *p
     mpm_io_line_number(m->text, sizeof m->text, used, "dt", (double)s->dt);
 }
 
-/* Builds the scene and cuts it, one rank after the other: whole scenes need memory. Returns 1, or 0 after a message. */
+/* Whether all ranks did it; if not, the first that did not has *mine 1: what it says is enough. */
+static int all_did(int rank, int ok, int *mine)
+{
+    int size, failed;
+    MPI_Comm_size(MPI_COMM_WORLD, &size);
+    failed = ok ? size : rank;
+    MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    *mine = failed == rank;
+    return failed == size;
+}
+
+/* Builds the scene and cuts it, one rank after the other: whole scenes need memory. Returns 1, or 0 on all ranks after
+   a message of the first that could not. */
 static int begin(many *m, particles_case *q, impact *s)
 {
     char message[400] = "";
-    int rank, size, k, ok = 1;
+    int rank, size, k, ok = 1, mine;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &size);
     for (k = 0; k < size; k++) {
@@ -56,8 +68,7 @@ static int begin(many *m, particles_case *q, impact *s)
                  ranks_begin(&m->r, MPI_COMM_WORLD, &s->world, message, sizeof message);
         MPI_Barrier(MPI_COMM_WORLD);
     }
-    MPI_Allreduce(MPI_IN_PLACE, &ok, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
-    return ok || (*message && rank == 0 ? complain(message) : 0);
+    return all_did(rank, ok, &mine) || (mine ? complain(message) : 0);
 }
 
 /* Rank 0 makes the folder or says what is wrong; all go on from a checkpoint, if there is one and it is wanted. */
@@ -65,11 +76,11 @@ static int prepare(many *m, particles_case *q, impact *s)
 {
     char path[PATH_BYTES];
     mpm_fault fault;
-    int pieces = 0, found = ranks_saved(q->out.folder, &pieces) >= 0;
+    int pieces = 0, found = ranks_saved(q->out.folder, &pieces) >= 0, mine;
     MPI_Bcast(&found, 1, MPI_INT, 0, MPI_COMM_WORLD);
     if (found && m->resume) {
         const int ok = ranks_resume(&m->r, &s->world, q->out.folder, m->text, &q->out.frame, &fault);
-        if (!ranks_all(&m->r, ok)) return ok || m->r.rank > 0 ? 0 : report(&fault, "checkpoint");
+        if (!all_did(m->r.rank, ok, &mine)) return mine ? report(&fault, "checkpoint") : 0;
         if (m->r.rank == 0 && !q->out.quiet)
             printf("going on from step %lld of %lld, of %d ranks\n", (long long)s->world.steps, (long long)s->steps,
                    pieces);
@@ -98,15 +109,16 @@ static int goes_on(many *m, particles_case *q, impact *s)
 /* One step of all ranks. An error on one of them ends the job. */
 static void step(many *m, impact *s)
 {
+    mpm_world *w = &s->world;
     mpm_status status = impact_step(s);
-    if (status >= 0 && m->balance > 0 && s->world.steps % m->balance == 0) {
-        status = ranks_exchange(&m->r, &s->world);
-        if (status >= 0) status = ranks_balance(&m->r, &s->world);
-    } else if (status >= 0) {
-        status = ranks_exchange(&m->r, &s->world);
+    if (status < 0) {
+        report(&w->fault, "step");
+        MPI_Abort(MPI_COMM_WORLD, 1);
     }
+    status = ranks_exchange(&m->r, w);
+    if (status >= 0 && m->balance > 0 && w->steps % m->balance == 0) status = ranks_balance(&m->r, w);
     if (status >= 0) return;
-    report(&s->world.fault, "step");
+    complain("no memory for the points of other ranks");
     MPI_Abort(MPI_COMM_WORLD, 1);
 }
 
@@ -132,47 +144,78 @@ static int run(many *m, particles_case *q, impact *s)
     return status;
 }
 
-/* ranks.csv and totals.json: what each rank had to do, and the sums over all. */
-static int accounts(const many *m, const particles_case *q, const mpm_world *w)
+#define ACCOUNT 8 /* columns of ranks.csv behind the rank */
+
+/* What this rank had to do. */
+static void account(const many *m, const particles_case *q, const mpm_world *w, double row[ACCOUNT])
 {
-    const ranks_totals t = ranks_sums(&m->r, w);
-    double row[8] = {m->r.cut[m->r.rank], m->r.cut[m->r.rank + 1], 0, 0, (double)mpm_bytes_used(w), q->out.cpu,
-                     m->r.waited, 0};
-    static double all[8 * 4096];
+    const int64_t steps = w->steps - q->out.first;
+    double carried = 0, ghosts = 0;
+    int32_t i;
+    for (i = 0; i < w->bodies; i++) carried += w->body[i].active;
+    for (i = 0; i < w->points.count; i++) ghosts += (w->points.flags[i] & RANKS_GHOST) && w->points.mass[i] > 0;
+    row[0] = m->r.cut[m->r.rank];
+    row[1] = m->r.cut[m->r.rank + 1];
+    row[2] = carried - ghosts;
+    row[3] = ghosts;
+    row[4] = (double)mpm_bytes_used(w);
+    row[5] = q->out.cpu;
+    row[6] = m->r.waited;
+    row[7] = steps > 0 ? (double)m->r.sent / (double)steps : 0;
+}
+
+/* ranks.csv, by rank 0: what each rank had to do. Returns 1, or 0 after a message. */
+static int ranks_table(const particles_case *q, const double *all, int size)
+{
     char path[PATH_BYTES];
     mpm_fault fault;
     mpm_io_csv c;
-    mpm_io_json j;
-    int32_t i;
-    int k, f, ok;
-    for (i = 0; i < w->bodies; i++) row[2] += w->body[i].active;
-    for (i = 0; i < w->points.count; i++) row[3] += (w->points.flags[i] & RANKS_GHOST) && w->points.mass[i] > 0;
-    row[2] -= row[3];
-    row[7] = w->steps > q->out.first ? (double)m->r.sent / (double)(w->steps - q->out.first) : 0;
-    if (m->r.size > 4096) return 1;
-    MPI_Gather(row, 8, MPI_DOUBLE, all, 8, MPI_DOUBLE, 0, MPI_COMM_WORLD);
-    if (m->r.rank > 0) return 1;
+    int k, f;
     mpm_io_csv_begin(&c, file_in(q->out.folder, "ranks.csv", path, sizeof path),
                      "rank,first_cell,end_cell,points,ghosts,bytes,cpu_s,waited_s,sent_bytes_per_step",
                      NULL, &fault);
-    for (k = 0; k < m->r.size; k++) {
+    for (k = 0; k < size; k++) {
         mpm_io_csv_integer(&c, k);
-        for (f = 0; f < 8; f++) mpm_io_csv_real(&c, (mpm_real)all[8 * k + f]);
+        for (f = 0; f < ACCOUNT; f++) mpm_io_csv_real(&c, (mpm_real)all[ACCOUNT * k + f]);
     }
-    ok = mpm_io_csv_end(&c, &fault) >= 0 || report(&fault, path);
+    return mpm_io_csv_end(&c, &fault) >= 0 || report(&fault, path);
+}
+
+/* totals.json, by rank 0: the sums over all. Returns 1, or 0 after a message. */
+static int totals(const many *m, const particles_case *q, const mpm_world *w, const ranks_totals *t)
+{
+    char path[PATH_BYTES];
+    mpm_fault fault;
+    mpm_io_json j;
     mpm_io_json_begin(&j, file_in(q->out.folder, "totals.json", path, sizeof path), &fault);
     mpm_io_json_integer(&j, "ranks", m->r.size);
     mpm_io_json_integer(&j, "steps", w->steps);
     mpm_io_json_integer(&j, "cuts_moved", m->r.moves);
-    mpm_io_json_number(&j, "points", t.points);
-    mpm_io_json_number(&j, "ghosts", t.ghosts);
-    mpm_io_json_number(&j, "mass_ng", t.mass);
-    mpm_io_json_number(&j, "momentum_x_ng_m_s", t.momentum[0]);
-    mpm_io_json_number(&j, "momentum_y_ng_m_s", t.momentum[1]);
-    mpm_io_json_number(&j, "momentum_z_ng_m_s", t.momentum[2]);
-    mpm_io_json_number(&j, "kinetic_pJ", t.kinetic);
-    mpm_io_json_number(&j, "internal_pJ", t.internal);
-    return ok && (mpm_io_json_end(&j, &fault) >= 0 || report(&fault, path));
+    mpm_io_json_number(&j, "points", t->points);
+    mpm_io_json_number(&j, "ghosts", t->ghosts);
+    mpm_io_json_number(&j, "mass_ng", t->mass);
+    mpm_io_json_number(&j, "momentum_x_ng_m_s", t->momentum[0]);
+    mpm_io_json_number(&j, "momentum_y_ng_m_s", t->momentum[1]);
+    mpm_io_json_number(&j, "momentum_z_ng_m_s", t->momentum[2]);
+    mpm_io_json_number(&j, "kinetic_pJ", t->kinetic);
+    mpm_io_json_number(&j, "internal_pJ", t->internal);
+    return mpm_io_json_end(&j, &fault) >= 0 || report(&fault, path);
+}
+
+/* Both files, all ranks together. Returns 1, or 0 on all ranks after a message of one. */
+static int accounts(const many *m, const particles_case *q, const mpm_world *w)
+{
+    const ranks_totals t = ranks_sums(&m->r, w);
+    const size_t size = m->r.rank == 0 ? (size_t)m->r.size : 1;
+    double row[ACCOUNT], *all = (double *)malloc(size * sizeof row);
+    int ok = ranks_all(&m->r, all || complain("no memory for ranks.csv"));
+    if (ok) {
+        account(m, q, w, row);
+        MPI_Gather(row, ACCOUNT, MPI_DOUBLE, all, ACCOUNT, MPI_DOUBLE, 0, MPI_COMM_WORLD);
+        if (m->r.rank == 0) ok = ranks_table(q, all, m->r.size) && totals(m, q, w, &t);
+    }
+    free(all);
+    return ranks_all(&m->r, ok);
 }
 
 /* Rank 0 puts the parts together, makes the last step alone, and writes what the serial program writes. The ledger's
@@ -183,8 +226,10 @@ static int finish(many *m, particles_case *q, impact *s, const option *o, int n)
     ranks_heap all = {NULL, 0, 0};
     char message[400], path[PATH_BYTES];
     impact whole;
-    int ok = accounts(m, q, &s->world) && ranks_collect(&m->r, &s->world, &all);
-    if (!ranks_all(&m->r, ok)) return ok ? 0 : complain("no memory to collect the parts");
+    int ok;
+    if (!accounts(m, q, &s->world)) return 0;
+    if (!ranks_collect(&m->r, &s->world, &all))
+        return m->r.rank == 0 ? complain("no memory to collect the parts") : 0;
     if (m->r.rank > 0) return 1;
     if (!particles_begin(&whole, q, message, sizeof message)) return complain(message);
     ranks_into(&m->r, &all, &whole.world);

@@ -42,6 +42,7 @@ typedef struct ranks {
     int32_t *active;     /* per body: points in use after the last exchange */
     int32_t bodies;
     size_t record;       /* bytes of one */
+    MPI_Datatype kind;   /* of one: messages count records, since int counts no more than 2 GB of bytes */
     ranks_heap out[2], in[2]; /* to and from the neighbours below and above */
     ranks_heap gone;     /* owned points that left the grid */
     int64_t sent;        /* bytes, to neighbours */
@@ -49,6 +50,14 @@ typedef struct ranks {
     int64_t moves;       /* times the cuts moved */
     double waited;       /* seconds in messages */
 } ranks;
+
+/* Whether all ranks did it: what one of them could not do ends for all, and none waits for it. */
+static inline int ranks_all(const ranks *r, int ok)
+{
+    int all = 0;
+    MPI_Allreduce(&ok, &all, 1, MPI_INT, MPI_MIN, r->comm);
+    return all;
+}
 
 /* ---- records --------------------------------------------------------------------------------- */
 
@@ -326,6 +335,7 @@ static inline void ranks_end(ranks *r)
     free(r->cut);
     free(r->body);
     free(r->active);
+    MPI_Type_free(&r->kind);
     memset(r, 0, sizeof *r);
 }
 
@@ -371,6 +381,8 @@ static inline int ranks_begin(ranks *r, MPI_Comm comm, mpm_world *w, char *messa
     r->halo = ranks_halo(w->desc.basis);
     r->uneven = 1.1;
     r->record = 4 * sizeof(int32_t) + (size_t)w->fields * sizeof(mpm_real);
+    MPI_Type_contiguous((int)r->record, MPI_BYTE, &r->kind);
+    MPI_Type_commit(&r->kind);
     for (a = 0; a < 3; a++)
         if (w->desc.cells[a] > w->desc.cells[r->axis] && (a != 1 || w->desc.geometry == MPM_3D)) r->axis = a;
     why = ranks_refuse(r, w);
@@ -401,6 +413,13 @@ static inline int ranks_retired(ranks *r, mpm_world *w)
     return 1;
 }
 
+/* The neighbour below (0) or above (1), or nobody. */
+static inline int ranks_neighbour(const ranks *r, int side)
+{
+    const int other = r->rank + 2 * side - 1;
+    return other >= 0 && other < r->size ? other : MPI_PROC_NULL;
+}
+
 /* Marks what is stale, and packs for the neighbours what they carry of the points owned here. */
 static inline int ranks_pack(ranks *r, mpm_world *w)
 {
@@ -416,8 +435,8 @@ static inline int ranks_pack(ranks *r, mpm_world *w)
                 continue;
             }
             for (side = 0; side < 2; side++) {
-                const int other = r->rank + 2 * side - 1;
-                if (other >= 0 && other < r->size && ranks_carries(r, other, cell) &&
+                const int other = ranks_neighbour(r, side);
+                if (other != MPI_PROC_NULL && ranks_carries(r, other, cell) &&
                     !ranks_push(&r->out[side], w, b, i, r->record))
                     return 0;
             }
@@ -427,36 +446,39 @@ static inline int ranks_pack(ranks *r, mpm_world *w)
     return 1;
 }
 
+/* Tells the neighbours how many records will come, and makes room for theirs. 0 without memory. */
+static inline int ranks_announce(ranks *r)
+{
+    int32_t coming[2] = {0, 0};
+    MPI_Request wait[4];
+    int side, ok = 1;
+    for (side = 0; side < 2; side++) {
+        MPI_Irecv(&coming[side], 1, MPI_INT32_T, ranks_neighbour(r, side), 0, r->comm, &wait[2 * side]);
+        MPI_Isend(&r->out[side].count, 1, MPI_INT32_T, ranks_neighbour(r, side), 0, r->comm, &wait[2 * side + 1]);
+    }
+    MPI_Waitall(4, wait, MPI_STATUSES_IGNORE);
+    for (side = 0; side < 2; side++) {
+        r->in[side].count = 0;
+        ok = ranks_room(&r->in[side], coming[side], r->record) && ok;
+        r->in[side].count = coming[side];
+    }
+    return ok;
+}
+
 /* Sends out[] to the neighbours, gets in[] from them: numbers first, then records. */
 static inline int ranks_swap(ranks *r)
 {
     const double begun = MPI_Wtime();
-    int32_t coming[2] = {0, 0};
     MPI_Request wait[4];
-    int side, pass, n, ok = 1;
-    for (pass = 0; pass < 2; pass++) {
-        for (side = n = 0; side < 2; side++) {
-            const int other = r->rank + 2 * side - 1;
-            ranks_heap *in = &r->in[side], *out = &r->out[side];
-            const int bytes = (int)r->record;
-            if (other < 0 || other >= r->size) continue;
-            if (pass == 0) {
-                MPI_Irecv(&coming[side], 1, MPI_INT32_T, other, 0, r->comm, &wait[n++]);
-                MPI_Isend(&out->count, 1, MPI_INT32_T, other, 0, r->comm, &wait[n++]);
-                continue;
-            }
-            MPI_Irecv(in->data, in->count * bytes, MPI_BYTE, other, 1, r->comm, &wait[n++]);
-            MPI_Isend(out->data, out->count * bytes, MPI_BYTE, other, 1, r->comm, &wait[n++]);
-            r->sent += (int64_t)out->count * bytes;
-        }
-        MPI_Waitall(n, wait, MPI_STATUSES_IGNORE);
-        for (side = 0; side < 2 && pass == 0; side++) {
-            r->in[side].count = 0;
-            ok = ranks_room(&r->in[side], coming[side], r->record) && ok;
-            r->in[side].count = coming[side];
-        }
-        if (!ok) return 0;
+    int side;
+    if (!ranks_announce(r)) return 0;
+    for (side = 0; side < 2; side++) {
+        const ranks_heap *in = &r->in[side], *out = &r->out[side];
+        MPI_Irecv(in->data, in->count, r->kind, ranks_neighbour(r, side), 1, r->comm, &wait[2 * side]);
+        MPI_Isend(out->data, out->count, r->kind, ranks_neighbour(r, side), 1, r->comm, &wait[2 * side + 1]);
+        r->sent += (int64_t)out->count * (int64_t)r->record;
     }
+    MPI_Waitall(4, wait, MPI_STATUSES_IGNORE);
     r->waited += MPI_Wtime() - begun;
     return 1;
 }
@@ -556,39 +578,45 @@ static inline int ranks_sort(ranks_heap *h, int32_t bodies, size_t record)
     return 1;
 }
 
-/* Every owned point to all ranks that carry it by the cuts: *mine gets what this one does. */
+/* Owned points for each rank that carries them by the cuts: count[k] records for rank k, from record at[k] on. 0
+   without memory. */
+static inline int ranks_pack_all(const ranks *r, const mpm_world *w, ranks_heap *out, int *count, int *at)
+{
+    int32_t b, i;
+    int k;
+    for (k = 0; k < r->size; k++) {
+        at[k] = out->count;
+        for (b = 0; b < w->bodies; b++)
+            for (i = w->body[b].first; i < w->body[b].first + w->body[b].active; i++)
+                if (!(w->points.flags[i] & RANKS_GHOST) &&
+                    ranks_carries(r, k, ranks_cell(r, w->points.x[r->axis][i])) && !ranks_push(out, w, b, i, r->record))
+                    return 0;
+        count[k] = out->count - at[k];
+    }
+    return 1;
+}
+
+/* Every owned point to all ranks that carry it by the cuts: *mine gets what this one does. 0 without memory: end with
+   MPI_Abort, since the others wait. */
 static inline int ranks_spread(ranks *r, const mpm_world *w, ranks_heap *mine)
 {
-    const int size = r->size;
-    int *count = (int *)calloc((size_t)size, sizeof *count), *from = (int *)calloc((size_t)size, sizeof *from);
-    int *to = (int *)calloc((size_t)size, sizeof *to), *at = (int *)calloc((size_t)size, sizeof *at);
+    const size_t size = (size_t)r->size;
+    int *count = (int *)calloc(4 * size, sizeof *count);
     ranks_heap out = {NULL, 0, 0};
-    int32_t b, i;
-    int k, ok = count && from && to && at;
-    for (k = 0; k < size && ok; k++) {
-        const int32_t before = out.count;
-        for (b = 0; b < w->bodies && ok; b++)
-            for (i = w->body[b].first; i < w->body[b].first + w->body[b].active && ok; i++)
-                if (!(w->points.flags[i] & RANKS_GHOST) && ranks_carries(r, k, ranks_cell(r, w->points.x[r->axis][i])))
-                    ok = ranks_push(&out, w, b, i, r->record);
-        count[k] = (int)((size_t)(out.count - before) * r->record);
-        at[k] = (int)((size_t)before * r->record);
-    }
+    int k, ok = count && ranks_pack_all(r, w, &out, count, count + size);
     if (ok) {
+        int *from = count + 2 * size, *to = count + 3 * size, sum = 0;
         MPI_Alltoall(count, 1, MPI_INT, from, 1, MPI_INT, r->comm);
-        for (k = 0, i = 0; k < size; k++) {
-            to[k] = i;
-            i += from[k];
+        for (k = 0; k < r->size; k++) {
+            to[k] = sum;
+            sum += from[k];
         }
-        ok = ranks_room(mine, (int32_t)((size_t)i / r->record), r->record);
-        mine->count = (int32_t)((size_t)i / r->record);
+        if ((ok = ranks_room(mine, sum, r->record)) != 0)
+            MPI_Alltoallv(out.data, count, count + size, r->kind, mine->data, from, to, r->kind, r->comm);
+        mine->count = ok ? sum : 0;
     }
-    if (ok) MPI_Alltoallv(out.data, count, at, MPI_BYTE, mine->data, from, to, MPI_BYTE, r->comm);
     free(out.data);
     free(count);
-    free(from);
-    free(to);
-    free(at);
     return ok && ranks_sort(mine, w->bodies, r->record);
 }
 
@@ -683,27 +711,36 @@ static inline ranks_totals ranks_sums(const ranks *r, const mpm_world *w)
     return t;
 }
 
-/* Everything owned, and what left the grid, to rank 0: *all there, nothing elsewhere. 0 without memory. */
+/* Every point that this rank owns, those that left the grid behind the others. 0 without memory. */
+static inline int ranks_owned(const ranks *r, const mpm_world *w, ranks_heap *mine)
+{
+    if (!ranks_take(r, w, 1, mine) || !ranks_room(mine, r->gone.count + 1, r->record)) return 0;
+    if (r->gone.count > 0)
+        memcpy(mine->data + (size_t)mine->count * r->record, r->gone.data, (size_t)r->gone.count * r->record);
+    mine->count += r->gone.count;
+    return 1;
+}
+
+/* These of all ranks to rank 0: *all there, nothing elsewhere. 0, on all ranks, where one of them has no memory. */
 static inline int ranks_collect(const ranks *r, const mpm_world *w, ranks_heap *all)
 {
     ranks_heap mine = {NULL, 0, 0};
-    int *bytes = (int *)calloc((size_t)r->size, sizeof *bytes), *at = (int *)calloc((size_t)r->size, sizeof *at);
-    int n, k, sum = 0, ok = bytes && at && ranks_take(r, w, 1, &mine) && ranks_room(&mine, r->gone.count, r->record);
-    if (ok && r->gone.count > 0)
-        memcpy(mine.data + (size_t)mine.count * r->record, r->gone.data, (size_t)r->gone.count * r->record);
-    mine.count += r->gone.count;
-    n = (int)((size_t)mine.count * r->record);
-    if (ok) MPI_Gather(&n, 1, MPI_INT, bytes, 1, MPI_INT, 0, r->comm);
-    for (k = 0; k < r->size && ok && r->rank == 0; k++) {
-        at[k] = sum;
-        sum += bytes[k];
+    int *count = (int *)calloc(2 * (size_t)r->size, sizeof *count), *at = NULL, k, sum = 0;
+    int ok = ranks_all(r, count && ranks_owned(r, w, &mine));
+    if (ok) {
+        const int n = mine.count;
+        at = count + r->size;
+        MPI_Gather(&n, 1, MPI_INT, count, 1, MPI_INT, 0, r->comm);
+        for (k = 0; k < r->size; k++) { /* all 0 but on rank 0 */
+            at[k] = sum;
+            sum += count[k];
+        }
+        ok = ranks_all(r, ranks_room(all, sum, r->record));
     }
-    if (ok && r->rank == 0) ok = ranks_room(all, (int32_t)((size_t)sum / r->record), r->record);
-    if (ok) MPI_Gatherv(mine.data, n, MPI_BYTE, all->data, bytes, at, MPI_BYTE, 0, r->comm);
-    all->count = (int32_t)((size_t)sum / r->record);
+    if (ok) MPI_Gatherv(mine.data, mine.count, r->kind, all->data, count, at, r->kind, 0, r->comm);
+    all->count = ok ? sum : 0;
     free(mine.data);
-    free(bytes);
-    free(at);
+    free(count);
     return ok;
 }
 

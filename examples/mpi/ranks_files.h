@@ -102,15 +102,7 @@ static inline mpm_status ranks_index(const char *path, int64_t frame, int pieces
     return mpm_io_close(&f, fault);
 }
 
-/* Whether all ranks did it. */
-static inline int ranks_all(const ranks *r, int ok)
-{
-    int all = 0;
-    MPI_Allreduce(&ok, &all, 1, MPI_INT, MPI_MIN, r->comm);
-    return all;
-}
-
-/* Writes frame number `frame` at time [ns]: all ranks together. Returns 1, or 0 after a message. */
+/* Writes frame number `frame` at time [ns]: all ranks together. Returns 1, or 0 on all ranks after a message of one. */
 static inline int ranks_frame(const ranks *r, const mpm_world *w, const char *folder, int64_t frame, double time)
 {
     ranks_columns c = {NULL, NULL, 0, 0};
@@ -122,11 +114,12 @@ static inline int ranks_frame(const ranks *r, const mpm_world *w, const char *fo
     free(c.real);
     free(c.whole);
     ok = ranks_all(r, ok);
-    if (!ok || r->rank > 0) return ok;
     snprintf(name, sizeof name, "points_%04lld.pvtu", (long long)frame);
-    return (ranks_index(file_in(folder, name, path, sizeof path), frame, r->size, &fault) >= 0 &&
-            mpm_io_pvd_add(file_in(folder, "particles.pvd", path, sizeof path), name, time, &fault) >= 0) ||
-           report(&fault, path);
+    if (ok && r->rank == 0)
+        ok = (ranks_index(file_in(folder, name, path, sizeof path), frame, r->size, &fault) >= 0 &&
+              mpm_io_pvd_add(file_in(folder, "particles.pvd", path, sizeof path), name, time, &fault) >= 0) ||
+             report(&fault, path);
+    return ranks_all(r, ok);
 }
 
 /* ---- checkpoints ------------------------------------------------------------------------------ */
@@ -160,18 +153,10 @@ static inline int ranks_saved(const char *folder, int *pieces)
     return strtol(set, NULL, 10) == 1;
 }
 
-/* Every rank writes its piece of the set that is not in use; when all are there, ranks.json names it. Until then the
-   one before is good. All ranks together. Returns 1, or 0 after a message. */
-static inline int ranks_save(const ranks *r, const mpm_world *w, const char *folder, const char *text, int64_t frame)
+/* What goes with the records of a checkpoint. */
+static inline ranks_state ranks_state_of(const ranks *r, const mpm_world *w, int64_t frame)
 {
-    ranks_heap mine = {NULL, 0, 0};
     ranks_state s;
-    mpm_blob blob[2];
-    mpm_fault fault;
-    mpm_io_json j;
-    char path[PATH_BYTES];
-    int pieces = 0, set = r->rank == 0 && ranks_saved(folder, &pieces) == 0, ok;
-    MPI_Bcast(&set, 1, MPI_INT, 0, r->comm);
     memset(&s, 0, sizeof s);
     s.steps = w->steps;
     s.notices = w->notices;
@@ -182,24 +167,42 @@ static inline int ranks_save(const ranks *r, const mpm_world *w, const char *fol
     s.dt_last = (double)w->dt_last;
     s.next_id = w->next_id;
     memcpy(s.tally, w->tally, sizeof s.tally);
-    ok = (ranks_take(r, w, 1, &mine) && ranks_room(&mine, r->gone.count + 1, r->record)) ||
-         complain("no memory for the checkpoint");
-    if (ok && r->gone.count > 0)
-        memcpy(mine.data + (size_t)mine.count * r->record, r->gone.data, (size_t)r->gone.count * r->record);
-    blob[0] = mpm_blob_of("state", &s, sizeof s);
-    blob[1] = mpm_blob_of("records", mine.data, (size_t)(mine.count + r->gone.count) * r->record);
-    if (ok) {
-        ranks_piece_path(folder, set, r->rank, path, sizeof path);
-        ok = mpm_io_checkpoint_write(path, text, blob, 2, &fault) >= 0 || report(&fault, path);
-    }
-    free(mine.data);
-    if (!ranks_all(r, ok)) return 0;
-    if (r->rank > 0) return 1;
+    return s;
+}
+
+/* Says which set of pieces is whole. Returns 1, or 0 after a message. */
+static inline int ranks_name_set(const ranks *r, const mpm_world *w, const char *folder, int set)
+{
+    char path[PATH_BYTES];
+    mpm_fault fault;
+    mpm_io_json j;
     mpm_io_json_begin(&j, file_in(folder, "ranks.json", path, sizeof path), &fault);
     mpm_io_json_integer(&j, "set", set);
     mpm_io_json_integer(&j, "pieces", r->size);
     mpm_io_json_integer(&j, "step", w->steps);
     return mpm_io_json_end(&j, &fault) >= 0 || report(&fault, path);
+}
+
+/* Every rank writes its piece of the set that is not in use; when all are there, ranks.json names it. Until then the
+   one before is good. All ranks together. Returns 1, or 0 on all ranks after a message of one. */
+static inline int ranks_save(const ranks *r, const mpm_world *w, const char *folder, const char *text, int64_t frame)
+{
+    ranks_heap mine = {NULL, 0, 0};
+    ranks_state s = ranks_state_of(r, w, frame);
+    mpm_blob blob[2];
+    mpm_fault fault;
+    char path[PATH_BYTES];
+    int pieces = 0, set = r->rank == 0 && ranks_saved(folder, &pieces) == 0, ok;
+    MPI_Bcast(&set, 1, MPI_INT, 0, r->comm);
+    ok = ranks_owned(r, w, &mine) || complain("no memory for the checkpoint");
+    blob[0] = mpm_blob_of("state", &s, sizeof s);
+    blob[1] = mpm_blob_of("records", mine.data, (size_t)mine.count * r->record);
+    ranks_piece_path(folder, set, r->rank, path, sizeof path);
+    if (ok) ok = mpm_io_checkpoint_write(path, text, blob, 2, &fault) >= 0 || report(&fault, path);
+    free(mine.data);
+    ok = ranks_all(r, ok);
+    if (ok && r->rank == 0) ok = ranks_name_set(r, w, folder, set);
+    return ranks_all(r, ok);
 }
 
 /* The records of one piece, behind those that are there. */
@@ -218,8 +221,9 @@ static inline mpm_status ranks_read(const char *path, const char *text, size_t r
     return mpm_io_checkpoint_read(path, text, blob, 2, fault);
 }
 
-/* Of the records of one piece those that this rank carries, to *mine; those beyond the grid that it owns, to gone. */
-static inline int ranks_sift(ranks *r, const mpm_world *w, const ranks_heap *h, ranks_heap *mine)
+/* Of the records of one piece those that this rank carries, to *mine; points beyond the grid among them: the next step
+   finds them again. 0 without memory. */
+static inline int ranks_sift(const ranks *r, const mpm_world *w, const ranks_heap *h, ranks_heap *mine)
 {
     const size_t along = (size_t)(w->points.x[r->axis] - w->field) / w->stride;
     int32_t k;
@@ -231,6 +235,17 @@ static inline int ranks_sift(ranks *r, const mpm_world *w, const ranks_heap *h, 
     return 1;
 }
 
+static inline void ranks_restore(mpm_world *w, const ranks_state *s)
+{
+    w->steps = s->steps;
+    w->notices = s->notices;
+    w->time = (mpm_real)s->time;
+    w->dt = (mpm_real)s->dt;
+    w->dt_last = (mpm_real)s->dt_last;
+    w->next_id = (int32_t)s->next_id;
+    memcpy(w->tally, s->tally, sizeof s->tally);
+}
+
 /* Goes on from the pieces of any number of ranks: *w is made anew. Returns 1, or 0 with the fault. */
 static inline int ranks_resume(ranks *r, mpm_world *w, const char *folder, const char *text, int64_t *frame,
                                mpm_fault *fault)
@@ -238,25 +253,22 @@ static inline int ranks_resume(ranks *r, mpm_world *w, const char *folder, const
     ranks_heap piece = {NULL, 0, 0}, mine = {NULL, 0, 0};
     ranks_state s;
     char path[PATH_BYTES];
-    int pieces = 0, k, ok = 1;
+    int pieces = 0, k, ok;
     const int set = ranks_saved(folder, &pieces);
     memset(&s, 0, sizeof s);
-    memset(fault, 0, sizeof *fault);
+    mpm_fail(fault, MPM_ERR_FILE, "ranks.json", set, -1);
+    ok = set >= 0 && pieces > 0;
     for (k = 0; k < pieces && ok; k++) {
         piece.count = 0;
+        mpm_fail(fault, MPM_ERR_MEMORY, "records of piece", 0, k);
         ok = ranks_read(ranks_piece_path(folder, set, k, path, sizeof path), text, r->record, &s, &piece, fault) >= 0 &&
              ranks_sift(r, w, &piece, &mine);
     }
     if (ok) {
-        w->steps = s.steps;
-        w->notices = s.notices;
-        w->time = (mpm_real)s.time;
-        w->dt = (mpm_real)s.dt;
-        w->dt_last = (mpm_real)s.dt_last;
-        w->next_id = (int32_t)s.next_id;
-        memcpy(w->tally, s.tally, sizeof s.tally);
+        ranks_restore(w, &s);
         *frame = s.frame;
-        ok = ranks_sort(&mine, w->bodies, r->record) && ranks_build(r, w, &mine) == MPM_OK;
+        ok = ranks_sort(&mine, w->bodies, r->record);
+        if (ok && (ok = ranks_build(r, w, &mine) == MPM_OK) == 0) *fault = w->fault;
     }
     free(piece.data);
     free(mine.data);

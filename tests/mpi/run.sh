@@ -49,6 +49,13 @@ dies() { # the third rank is killed once a checkpoint is there: the job ends, an
     pkill -KILL -n -f "$program.*$1"
     ! wait $job && [ -f "$dir/$1/ranks.json" ] && [ ! -f "$dir/$1/summary.json" ]
 }
+ends() { # folder, file that rank 0 alone cannot write: no rank waits for it for ever
+    mkdir -p "$dir/$1/$2"
+    timeout 60 mpirun -n 2 $program $scene --time 1 --out "$dir/$1" 2>"$dir/said"
+    code=$?
+    cat "$dir/said"
+    [ $code -ne 0 ] && [ $code -ne 124 ] && grep -q "$2: " "$dir/said"
+}
 refuses() { # ranks, text, options
     n=$1 text=$2
     shift 2
@@ -93,6 +100,8 @@ check "a rank that dies ends the job" dies killed
 check "... which goes on with the last checkpoint" ranks 2 killed --time 60 --resume
 check "... to the tables of a run in peace" ranks 1 peace --time 60
 check "... the same" same peace killed particles.csv
+check "a frame that cannot be written ends all ranks" ends no_frame points_0000.pvtu
+check "... and so does a table" ends no_table ranks.csv
 check "no surfaces" refuses 2 "surface" --method surface
 check "no such cell" refuses 2 "cell" --cell -1
 check "too many ranks for the grid" refuses 12 "thinner" --cell 6 --spacing 3 --count 1

@@ -134,7 +134,7 @@ static inline int history_csv(const history *h, const char *folder)
 
 /* ---- measures of a world ----------------------------------------------------------------------- */
 
-/* sum of m (v - mean)^2 of a body, along z */
+/* Sum of m (v - mean)^2 of a body, along z. */
 static inline double history_spread(const mpm_world *w, int32_t body, double mean)
 {
     const mpm_body *b = &w->body[body];
@@ -147,21 +147,30 @@ static inline double history_spread(const mpm_world *w, int32_t body, double mea
     return sum;
 }
 
-/* The largest stresses of all points: equivalent, and pressure, at least 0. */
+/* Pressure and von Mises' equivalent stress of a point. */
+static inline double point_pressure(const mpm_points *p, int32_t i)
+{
+    return -((double)p->stress[0][i] + (double)p->stress[1][i] + (double)p->stress[2][i]) / 3;
+}
+
+static inline double point_mises(const mpm_points *p, int32_t i)
+{
+    const double xx = (double)p->stress[0][i], yy = (double)p->stress[1][i], zz = (double)p->stress[2][i];
+    const double yz = (double)p->stress[3][i], xz = (double)p->stress[4][i], xy = (double)p->stress[5][i];
+    return sqrt(((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) / 2 +
+                3 * (yz * yz + xz * xz + xy * xy));
+}
+
+/* The largest of all points: equivalent stress, and pressure, at least 0. */
 static inline void history_stress(const mpm_points *p, double *mises, double *pressure)
 {
-    double most = 0, deepest = 0;
     int32_t i;
+    *mises = *pressure = 0;
     for (i = 0; i < p->count; i++) {
-        const double xx = (double)p->stress[0][i], yy = (double)p->stress[1][i], zz = (double)p->stress[2][i];
-        const double yz = (double)p->stress[3][i], xz = (double)p->stress[4][i], xy = (double)p->stress[5][i];
-        const double square = ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) / 2 +
-                              3 * (yz * yz + xz * xz + xy * xy);
-        if (square > most) most = square;
-        if (-(xx + yy + zz) > deepest) deepest = -(xx + yy + zz);
+        const double stress = point_mises(p, i), deep = point_pressure(p, i);
+        if (stress > *mises) *mises = stress;
+        if (deep > *pressure) *pressure = deep;
     }
-    *mises = sqrt(most);
-    *pressure = deepest / 3;
 }
 
 /* ---- the picture ----------------------------------------------------------------------------- */

@@ -223,15 +223,12 @@ static inline double page_bond(const mpm_points *p, int32_t i) { return (double)
 
 static inline double page_pressure(const mpm_points *p, int32_t i)
 {
-    return -((double)p->stress[0][i] + (double)p->stress[1][i] + (double)p->stress[2][i]) / 3 / 1000;
+    return point_pressure(p, i) / 1000; /* GPa */
 }
 
 static inline double page_mises(const mpm_points *p, int32_t i)
 {
-    const double xx = (double)p->stress[0][i], yy = (double)p->stress[1][i], zz = (double)p->stress[2][i];
-    const double yz = (double)p->stress[3][i], xz = (double)p->stress[4][i], xy = (double)p->stress[5][i];
-    return sqrt(((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) / 2 +
-                3 * (yz * yz + xz * xz + xy * xy)) / 1000;
+    return point_mises(p, i) / 1000;
 }
 
 static inline double page_speed(const mpm_points *p, int32_t i)

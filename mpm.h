@@ -118,9 +118,6 @@ typedef double mpm_real;
 #endif
 
 /* What stands before every function of the library. */
-#ifdef MPM_COMPILED
-#undef MPM_IMPLEMENTATION
-#endif
 #ifdef MPM_STATIC
 #ifndef MPM_IMPLEMENTATION
 #define MPM_IMPLEMENTATION
@@ -1069,6 +1066,9 @@ MPM_API const char *mpm_version(void);
 #endif /* MPM_H - stop here if you only want the API */
 
 /* ============================================================================================ */
+#if defined(MPM_COMPILED) && !defined(MPM_STATIC) /* also where it is defined after the first #include */
+#undef MPM_IMPLEMENTATION
+#endif
 #if defined(MPM_IMPLEMENTATION) && !defined(MPM__IMPLEMENTED)
 #define MPM__IMPLEMENTED
 

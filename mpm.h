@@ -50,7 +50,7 @@
      MPM_COMPILED         GLOBAL  mpm.c is compiled and linked in: MPM_IMPLEMENTATION is ignored, so that a
                                   program of one file is compiled faster, without a change.
      MPM_MALLOC(n), MPM_FREE(p)  IMPL  used only where the caller passes NULL for memory.
-     MPM_BLOCK            IMPL    points per constitutive block (default 64), and most points that a sweep or a
+     MPM_BLOCK            IMPL    points per constitutive block (1 .. 1024; 64), and most points that a sweep or a
                                   material treats together. 8 is right for small machines: the same bits, a
                                   tenth slower, frames of 5 KiB (float, -Os) instead of 15.
      MPM_NO_INLINE        IMPL    the kernels are not inlined by force: slower, but quick to compile.
@@ -80,6 +80,7 @@
      base         the lowest node that a point touches.
      run          consecutive points of a body with the same base; they share their nodes.
      span, part   up to MPM_BLOCK points of a body, swept together; a part of them lies in one run.
+     piece        up to MPM_BLOCK points of a run, where runs are swept one by one.
      block        a span handed to the body's material.
      mirror       a symmetry plane: nodes behind it are images of those before it.
      ghost        with GIMP and splines, the layer of nodes around the grid that points near its sides reach.
@@ -1082,8 +1083,8 @@ MPM_API const char *mpm_version(void);
 
 #ifndef MPM_BLOCK
 #define MPM_BLOCK 64
-#elif MPM_BLOCK < 1
-#error "MPM_BLOCK is a number of points: at least 1"
+#elif MPM_BLOCK < 1 || MPM_BLOCK > 1024
+#error "MPM_BLOCK is a number of points on the stack: at least 1, at most 1024"
 #endif
 
 #define MPM__LANES (MPM_BLOCK + 4) /* room for the points of a span, and for what is written beyond the last */

@@ -23,8 +23,10 @@ for real in double float; do
         check "... has the same bits" cmp "$dir/$real" "$dir/$real.$n"
     done
 done
-check "MPM_BLOCK 0 is no number of points" sh -c \
-    "! $cc -DMPM_BLOCK=0 -I. -fsyntax-only mpm.c 2>'$dir/refusal' && grep -q 'at least 1' '$dir/refusal'"
+for n in 0 1025; do
+    check "MPM_BLOCK $n is no number of points" sh -c \
+        "! $cc -DMPM_BLOCK=$n -I. -fsyntax-only mpm.c 2>'$dir/refusal' && grep -q 'at least 1' '$dir/refusal'"
+done
 
 # The frames of the library, in bytes, by gcc: what a small machine needs is set by the largest.
 frames() { # name, options...: the largest frame of mpm.h, mpm_ptw.h and mpm_bond.h

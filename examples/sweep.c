@@ -955,6 +955,7 @@ static int carry_out(int argc, char **argv)
     option o[20];
     const int named = argc > 1 && strncmp(argv[1], "-", 1);
     int n, parsed, result;
+    signal(SIGCHLD, SIG_DFL); /* who started this may ignore it: then nobody can wait for a program */
     s.self = argv[0];
     s.folder = "build/sweep-out";
     s.keys = s.program_name = "";

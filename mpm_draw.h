@@ -1915,25 +1915,42 @@ static inline void mpm__draw_triangle(mpm__draw_scene *s, const mpm__draw_seen t
         }
 }
 
-/* The window: of the box, or of all places and their images. */
+/* Where the window must reach: corner i of the box, or place i as an image. 0 if it is not drawn, as retired points are
+   not; `walk` as for mpm__draw_body_at. */
+static inline int mpm__draw_solid_reach(const mpm_draw_solid_desc *d, int given, size_t i, int image, double to[3][3],
+                                        int32_t *walk, double at[3])
+{
+    mpm__draw_seen seen;
+    double corner[3];
+    int k;
+    if (given) {
+        for (k = 0; k < 3; k++) corner[k] = d->box[2 * k + (int)(i >> k & 1)];
+        mpm__draw_turned(to, corner, at);
+        return 1;
+    }
+    if (!d->triangles && d->world && mpm__draw_body_at(d->world, (int32_t)i, walk) < 0) return 0;
+    mpm__draw_see(d, i, image, to, NULL, &seen);
+    memcpy(at, seen.at, sizeof seen.at);
+    return at[0] - at[0] == 0 && at[1] - at[1] == 0;
+}
+
+/* The window: of the box, or of all places that are drawn and their images. */
 static inline void mpm__draw_solid_fit(const mpm_draw_solid_desc *d, double to[3][3], mpm__draw_axes *a)
 {
     const int given = d->box[1] > d->box[0] && d->box[3] > d->box[2] && d->box[5] > d->box[4];
     const size_t places = given ? 8 : d->count;
     const double half = given || d->triangles ? 0 : d->size / 2;
-    mpm__draw_seen seen;
+    double at[3];
     size_t i;
+    int32_t walk;
     int image, k, first = 1;
     memset(a, 0, sizeof *a);
     for (image = 0; image < (given ? 1 : 8); image++)
-        for (i = 0; i < places && mpm__draw_has_image(d, image); i++) {
-            double corner[3];
-            for (k = 0; k < 3; k++) corner[k] = d->box[2 * k + (int)(i >> k & 1)];
-            if (given) mpm__draw_turned(to, corner, seen.at);
-            else mpm__draw_see(d, i, image, to, NULL, &seen);
-            for (k = 0; k < 2 && seen.at[0] - seen.at[0] == 0 && seen.at[1] - seen.at[1] == 0; k++) {
-                if (first || seen.at[k] - half < a->low[k]) a->low[k] = seen.at[k] - half;
-                if (first || seen.at[k] + half > a->high[k]) a->high[k] = seen.at[k] + half;
+        for (walk = 0, i = 0; i < places && mpm__draw_has_image(d, image); i++) {
+            if (!mpm__draw_solid_reach(d, given, i, image, to, &walk, at)) continue;
+            for (k = 0; k < 2; k++) {
+                if (first || at[k] - half < a->low[k]) a->low[k] = at[k] - half;
+                if (first || at[k] + half > a->high[k]) a->high[k] = at[k] + half;
                 first = first && k == 0;
             }
         }

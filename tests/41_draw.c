@@ -861,10 +861,11 @@ static void test_solid_world(void)
     mpm_desc g = mpm_desc_default();
     mpm_body_desc b = mpm_body_desc_default();
     mpm_draw_solid_desc d;
-    mpm_draw_canvas c;
+    mpm_draw_canvas c, both[2];
     mpm_draw_rect all;
     mpm_world w;
     mpm_fault f;
+    int k;
     g.cell = 1;
     g.cells[0] = g.cells[1] = g.cells[2] = 6;
     g.side[0] = g.side[2] = MPM_SIDE_SYMMETRY;
@@ -882,6 +883,14 @@ static void test_solid_world(void)
     CHECK_RELATIVE("... on both sides of the mirror", darkness(&c, 0, 0, 200, 200), darkness(&c, 200, 0, 400, 200),
                    0.01);
     CHECK_EQUAL("written", mpm_io_png(FOLDER "/solid.png", c.rgb, c.width, c.height, NULL, &f), MPM_OK);
+    w.body[0].active--;
+    for (k = 0; k < 2; k++) {
+        mpm_draw_canvas_init(&both[k], 400, 300, NULL, 0);
+        CHECK_EQUAL("a point less", mpm_draw_solid(&both[k], all, &d, &f), MPM_OK);
+        w.points.x[0][w.body[0].active] = 600;
+    }
+    CHECK_TRUE("wherever it was retired, the picture is the same", !memcmp(both[0].rgb, both[1].rgb, 400 * 300 * 3));
+    for (k = 0; k < 2; k++) mpm_draw_canvas_free(&both[k]);
     mpm_draw_canvas_free(&c);
     mpm_free(&w);
 }

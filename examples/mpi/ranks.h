@@ -483,7 +483,7 @@ static inline int ranks_swap(ranks *r)
     return 1;
 }
 
-/* Where in[side] has the records of a body: first[side] .. end[side] - 1. */
+/* Where in[side] has the records of a body that are not put yet: at[side] .. end[side] - 1. */
 typedef struct ranks_queue {
     int32_t at[2], end[2];
 } ranks_queue;

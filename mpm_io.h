@@ -2257,22 +2257,36 @@ static inline int mpm__io_film_copy(mpm_io_film *f, FILE *in)
     return 0;
 }
 
-MPM_API mpm_status mpm_io_film_add_png(mpm_io_film *f, const char *path, mpm_fault *fault)
+/* Reads the head of a picture of mpm_io_png: its size. Returns 0 if it is none. */
+static inline int mpm__io_film_head(FILE *in, int *width, int *height)
 {
     static const unsigned char kind[5] = {8, 2, 0, 0, 0}; /* 8 bits, RGB, the one way to compress and filter, in rows */
     unsigned char head[33];
+    uint32_t across, down;
+    if (fread(head, 1, 33, in) != 33 || memcmp(head, "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR", 16) ||
+        memcmp(head + 24, kind, 5))
+        return 0;
+    across = mpm__io_from_big_endian(head + 16);
+    down = mpm__io_from_big_endian(head + 20);
+    if (across < 1 || across > 16384 || down < 1 || down > 16384) return 0;
+    *width = (int)across;
+    *height = (int)down;
+    return 1;
+}
+
+MPM_API mpm_status mpm_io_film_add_png(mpm_io_film *f, const char *path, mpm_fault *fault)
+{
+    int width, height;
     FILE *in;
     if (f->status < 0) return f->status;
     in = path ? fopen(path, "rb") : NULL;
     if (!in) return f->status = mpm_fail(fault, MPM_ERR_FILE, "picture (cannot be opened)", 0, -1);
-    if (fread(head, 1, 33, in) != 33 || memcmp(head, "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR", 16) ||
-        memcmp(head + 24, kind, 5))
+    if (!mpm__io_film_head(in, &width, &height))
         f->status = mpm_fail(fault, MPM_ERR_FILE, "picture: none of mpm_io_png", 0, -1);
     else
-        f->status = mpm__io_film_takes(f, (int)mpm__io_from_big_endian(head + 16),
-                                       (int)mpm__io_from_big_endian(head + 20), fault);
+        f->status = mpm__io_film_takes(f, width, height, fault);
     if (f->status >= 0) {
-        mpm__io_film_next(f, (int)mpm__io_from_big_endian(head + 16), (int)mpm__io_from_big_endian(head + 20));
+        mpm__io_film_next(f, width, height);
         if (!mpm__io_film_copy(f, in)) f->status = mpm_fail(fault, MPM_ERR_FILE, "picture: damaged", 0, -1);
     }
     fclose(in);

@@ -1289,6 +1289,11 @@ static void test_film_refused(void)
     film_refused("a damaged picture", FOLDER "/other.png", 0, MPM_ERR_FILE, "damaged");
     if (file) write_file(FOLDER "/other.png", file, n / 2);
     film_refused("half a picture", FOLDER "/other.png", 0, MPM_ERR_FILE, "damaged");
+    if (file) {
+        memset(file + 16, 0, 4);
+        write_file(FOLDER "/other.png", file, n);
+    }
+    film_refused("a picture without width", FOLDER "/other.png", 0, MPM_ERR_FILE, "mpm_io_png");
     free(file);
     write_file(FOLDER "/other.png", "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\0\x14\0\0\0\2\x8\2\0\0\0"
                "\0\0\0\0\0\0\0\0IEND\0\0\0\0", 45);

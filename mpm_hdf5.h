@@ -777,13 +777,44 @@ static inline int mpm__hdf5_repair(const char *path, const char *part, int64_t f
     return good && mpm__hdf5_rename(part, path);
 }
 
+/* Where the last of so many frames ends, by the tables of beginnings and lengths. */
+static inline int mpm__hdf5_end(const mpm__hdf5_file *f, const char *first, const char *count, int64_t frames,
+                                hsize_t *end)
+{
+    int64_t at = 0, n = 0;
+    const int good = mpm__hdf5_get(f->steps, first, (hsize_t)(frames - 1), 1, H5T_NATIVE_INT64, &at) &&
+                     mpm__hdf5_get(f->root, count, (hsize_t)(frames - 1), 1, H5T_NATIVE_INT64, &n);
+    *end = (hsize_t)(at + n);
+    return good;
+}
+
+/* Whether every array ends with the last of so many frames: one that could not be added, as on a full disk, may leave
+   rows. */
+static inline int mpm__hdf5_exact(const mpm__hdf5_file *f, int64_t frames)
+{
+    const hsize_t n = (hsize_t)frames;
+    hsize_t points = 0, cells = 0, ids = 0, i;
+    char name[MPM__HDF5_NAME];
+    int k, good = frames > 0 && mpm__hdf5_end(f, "PointOffsets", "NumberOfPoints", frames, &points) &&
+                  mpm__hdf5_end(f, "CellOffsets", "NumberOfCells", frames, &cells) &&
+                  mpm__hdf5_end(f, "ConnectivityIdOffsets", "NumberOfConnectivityIds", frames, &ids);
+    for (k = 0; k < 3; k++) good = good && mpm__hdf5_rows(f->root, mpm__hdf5_part[k], NULL) == n;
+    for (k = 0; k < 5; k++) good = good && mpm__hdf5_rows(f->steps, mpm__hdf5_step[k], NULL) == n;
+    good = good && mpm__hdf5_rows(f->steps, "Values", NULL) == n && mpm__hdf5_rows(f->root, "Points", NULL) == points &&
+           mpm__hdf5_rows(f->root, "Connectivity", NULL) == ids && mpm__hdf5_rows(f->root, "Types", NULL) == cells &&
+           mpm__hdf5_rows(f->root, "Offsets", NULL) == cells + n;
+    for (i = 0; good && mpm__hdf5_member(f->points, i, name); i++)
+        good = mpm__hdf5_rows(f->points, name, NULL) == points && mpm__hdf5_rows(f->offsets, name, NULL) == n;
+    return good;
+}
+
 /* Whether a file can be gone on with as it is: so many frames, and nothing behind them. */
 static inline int mpm__hdf5_ready(const char *path, int64_t frames)
 {
     mpm__hdf5_file f;
     int64_t there = -1;
     const int good = mpm__hdf5_open(&f, path, H5F_ACC_RDONLY) && mpm__hdf5_steps(&f, &there) && there == frames &&
-                     mpm__hdf5_rows(f.steps, "Values", NULL) == (hsize_t)frames;
+                     mpm__hdf5_exact(&f, frames);
     mpm__hdf5_close(&f);
     return good;
 }

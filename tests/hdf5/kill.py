@@ -80,5 +80,11 @@ with h5py.File(path, "r"):  # someone looks at it meanwhile
     check("a reader that has it open does not stop the process", done.returncode == 0)
 with h5py.File(path, "r") as f:
     check("... and opened again it shows the new frames", frames_in(f, frame + 5) == frame + 5)
+with h5py.File(path, "r+") as f:  # what a frame may leave that could not be added whole
+    for name in ("Points", "NumberOfPoints", "Steps/PointOffsets"):
+        f["VTKHDF/" + name].resize(f["VTKHDF/" + name].shape[0] + 1, axis=0)
+done = subprocess.run([append, path, str(frame + 5), str(frame + 7)], stdout=subprocess.PIPE)
+with h5py.File(path, "r") as f:
+    check("rows of a frame that failed are dropped", done.returncode == 0 and frames_in(f, frame + 7) == frame + 7)
 check("no .part is left", not os.path.exists(path + ".part"))
 sys.exit(series.end())

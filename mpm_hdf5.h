@@ -97,7 +97,7 @@ MPM_API int mpm_hdf5_built(void);
 /* One named quantity at every point, as plain arrays. Set either data[] or one of the whole-number pointers. Of six
    components the order here is that of mpm.h, xx yy zz yz xz xy; the file gets the XX YY ZZ XY YZ XZ of ParaView. */
 typedef struct mpm_hdf5_field {
-    const char *name;         /* as shown in ParaView; at most 200 bytes */
+    const char *name;         /* as shown in ParaView; at most 200 bytes; of no other field */
     int components;           /* 1 .. 9; 3 is a vector, 6 a symmetric tensor */
     const mpm_real *data[9];  /* one array of `count` values per component; NULL: zeros */
     double scale;             /* multiplies on output, for a change of units; 1 leaves the bits alone */
@@ -236,12 +236,17 @@ MPM_API mpm_hdf5_desc mpm_hdf5_desc_default(void)
 
 #define MPM__HDF5_NAME 256 /* bytes of the name of a field in the file */
 
-static inline mpm_status mpm__hdf5_check_field(const mpm_hdf5_field *f, int64_t i, mpm_fault *fault)
+static inline mpm_status mpm__hdf5_check_field(const mpm_hdf5_field *fields, int i, mpm_fault *fault)
 {
+    const mpm_hdf5_field *f = &fields[i];
+    int k;
     if (!f->name || !*f->name || strlen(f->name) > 200)
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "length of name of field", f->name ? (mpm_real)strlen(f->name) : 0, i);
     if (f->components < 1 || f->components > 9 || ((f->bytes || f->integers) && f->components != 1))
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "components of field", (mpm_real)f->components, i);
+    for (k = 0; k < i; k++)
+        if (!strcmp(fields[k].name, f->name))
+            return mpm_fail(fault, MPM_ERR_ARGUMENT, "name of field (of another too, number)", (mpm_real)k, i);
     return MPM_OK;
 }
 
@@ -263,7 +268,7 @@ static inline mpm_status mpm__hdf5_check(const mpm_hdf5_desc *d, mpm_fault *faul
                             (int64_t)(l / (size_t)d->cell_points));
     if (d->field_count < 0 || (d->field_count > 0 && !d->fields))
         return mpm_fail(fault, MPM_ERR_ARGUMENT, "field_count", (mpm_real)d->field_count, -1);
-    for (i = 0; i < d->field_count && status >= 0; i++) status = mpm__hdf5_check_field(&d->fields[i], i, fault);
+    for (i = 0; i < d->field_count && status >= 0; i++) status = mpm__hdf5_check_field(d->fields, i, fault);
     return status;
 }
 

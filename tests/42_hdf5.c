@@ -92,6 +92,10 @@ static void check_arguments(scene *s)
     d = describe(s, 10, 0);
     s->field[2].name = "";
     CHECK_EQUAL("a field without a name", mpm_hdf5_frame(path, 0, &d, NULL), MPM_ERR_ARGUMENT);
+    d = describe(s, 10, 0);
+    s->field[2].name = s->field[1].name;
+    CHECK_EQUAL("two fields of one name", mpm_hdf5_frame(path, 0, &d, &fault), MPM_ERR_ARGUMENT);
+    CHECK_TRUE("... which ones", fault.index == 2 && fault.value > 0 && fault.value < 2);
     CHECK_TRUE("nothing was written", !exists(path) && !exists(FOLDER "/refused.vtkhdf.part"));
 }
 

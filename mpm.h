@@ -325,7 +325,7 @@ static inline void *mpm_carve(char *base, size_t *used, size_t n, size_t size)
 /* 0 if memory begins where any of our arrays may, at a multiple of what numbers, counters and pointers ask for, as
    malloc's does; else how many bytes beside. Test: 21_world. */
 struct mpm_widest {
-    char byte;
+    char first;
     union { double real; int64_t count; void *pointer; } value;
 };
 static inline int mpm_unaligned(const void *memory)
@@ -1298,9 +1298,9 @@ MPM_KERNEL void mpm__distances(const mpm_world *w, const mpm_run *r, int32_t fir
 MPM_KERNEL void mpm__weigh(const mpm_world *w, const mpm_run *r, int32_t first, int n, int k, int ky, mpm__weights *s)
 {
     const mpm_real inv = 1 / w->desc.cell, l = mpm__point_size(w, r->body) / 2;
-    mpm_real far[3][MPM__LANES], *t[3];
+    mpm_real place[3][MPM__LANES], *t[3];
     int d;
-    for (d = 0; d < 3; d++) t[d] = far[d];
+    for (d = 0; d < 3; d++) t[d] = place[d];
     s->n = n;
     s->slope = inv;
     mpm__distances(w, r, first, n, t);

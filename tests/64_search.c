@@ -176,13 +176,15 @@ static void rules(void)
     CHECK_EQUAL("... slow, not held", stays(&r, 1.99, 0), 0);
     CHECK_EQUAL("... held, too fast", stays(&r, 2, 1), 0);
     CHECK_EQUAL("... slow downwards", stays(&r, -1.99, 1), 1);
-    CHECK_EQUAL("... fast downwards", stays(&r, -2, 1), 0);
+    CHECK_EQUAL("... drawn back by its bond", stays(&r, -2, 1), 1);
     CHECK_EQUAL("... slow downwards, not held", stays(&r, -1.99, 0), 0);
     CHECK_EQUAL("... at rest", stays(&r, 0, 1), 1);
     CHECK_EQUAL("... not a number", stays(&r, NAN, 1), 0);
     r.stays = 0.5;
     CHECK_EQUAL("... a velocity of one's own", stays(&r, 0.49, 1), 1);
-    CHECK_EQUAL("... at that, either way", stays(&r, 0.5, 1) + stays(&r, -0.5, 1), 0);
+    CHECK_EQUAL("... at that", stays(&r, 0.5, 1), 0);
+    r.pbcp = CRITICAL_LEFT;
+    CHECK_EQUAL("... with less of it bonded than has to be", stays(&r, 0.49, 1), 0);
 }
 
 static critical_range range(double low, double high, double scan, double step)
@@ -365,10 +367,13 @@ static void classes(void)
     CHECK_EQUAL("rule stays: slow and held, whatever the PBCP", bonds(&q, 0, 0, 50, 1.99, 0.1), 1);
     CHECK_EQUAL("... downwards", bonds(&q, 1, 0, 50, -1.99, 0.1), 1);
     CHECK_EQUAL("... not held", bonds(&q, 0, 9, 0, 0, 0), 0);
-    CHECK_EQUAL("... too fast", bonds(&q, 0, 9, 0, 2, 1) + bonds(&q, 1, 9, 0, -2, 1), 0);
+    CHECK_EQUAL("... too fast", bonds(&q, 0, 9, 0, 2, 1), 0);
     q.stays = 1;
     CHECK_EQUAL("... a velocity of one's own", bonds(&q, 0, 0, 50, 0.99, 0.1), 1);
     CHECK_EQUAL("... at that", bonds(&q, 0, 0, 50, 1, 0.1), 0);
+    q.base.method = "surface";
+    CHECK_EQUAL("... on surfaces a tenth has to be bonded", bonds(&q, 0, 9.9, 50, 0.99, 0.1), 0);
+    CHECK_EQUAL("... and is", bonds(&q, 0, 10, 50, 0.99, 0.1), 1);
 }
 
 int main(void)

@@ -142,7 +142,7 @@ static inline int calibration_bonds(const calibration *q, int size, const double
     critical_rule r = critical_rule_default();
     r.name = q->rule;
     r.stays = q->stays;
-    r.pbcp = q->pbcp[size];
+    r.pbcp = strcmp(q->rule, "stays") ? q->pbcp[size] : calibration_surface(q) ? CRITICAL_LEFT : 0;
     r.v_rest = q->restitution[size] * q->velocity[size];
     return critical_bonds(&r, q->diameter[size], value);
 }

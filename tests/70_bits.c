@@ -236,13 +236,13 @@ int main(int argc, char **argv)
         {"elastic", bits_elastic, 0, 0, {UINT64_C(0x9591c038c37b59a5), UINT64_C(0x5fe164c4806b5286)}},
         {"elastic, consistent", bits_elastic_consistent, 0, 0,
          {UINT64_C(0x6555b2a7ace79a0e), UINT64_C(0x47fe55ce4b3ab8cf)}},
-        {"default, 400 steps", bits_default_early, 1, 0, {UINT64_C(0x234642c8e471a98c), UINT64_C(0xf71eb2e18b3215af)}},
+        {"default, 400 steps", bits_default_early, 1, 0, {UINT64_C(0x234642c8e471a98c), UINT64_C(0xe4f89df24fd3dae1)}},
         {"gimp, logistic", bits_logistic, 1, 0, {UINT64_C(0x7794de1bf34d5210), UINT64_C(0x229766585293621b)}},
         {"axisymmetric", bits_axisymmetric, 1, 0, {UINT64_C(0xb0b4748217afcdd4), UINT64_C(0x7646fc80e6ba647c)}},
         {"consistent", bits_consistent, 1, 0, {UINT64_C(0x6e494f8b8cad7d31), UINT64_C(0xc0dbe6c8efc0b16d)}},
         {"taylor", bits_taylor, 1, 0, {UINT64_C(0x532bbec3722405ca), UINT64_C(0xae7d514e50c83cf4)}},
         {"spray", bits_spray, 1, 0, {UINT64_C(0xcdb2d9be37320c1c), UINT64_C(0x44671a3a950d43b5)}},
-        {"default", bits_default, 1, 1, {UINT64_C(0xf14dd4c03fe9fd1e), UINT64_C(0x4026edbd1e9d8d7a)}},
+        {"default", bits_default, 1, 1, {UINT64_C(0xf14dd4c03fe9fd1e), UINT64_C(0x562aa2dcd77ff25b)}},
     };
     const uint64_t libm[2] = {UINT64_C(0xb1aa056693a88028), UINT64_C(0x0349026f05df3184)}; /* glibc 2.36, x86-64 */
     const int quick = argc > 1 && !strcmp(argv[1], "quick"), real = sizeof(mpm_real) == sizeof(float);

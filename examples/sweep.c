@@ -409,7 +409,7 @@ static const char *work_path(const sweep *s, const char *key, int n, char *path,
 {
     char ending[20];
     snprintf(ending, sizeof ending, ".%d", n);
-    return kept_path(s->folder, "work", key, ending, path, room);
+    return kept_path(s->folder, "attempts", key, ending, path, room);
 }
 
 /* Renames the work of a task to its result. An answer that got lost on its way, as NFS can lose one, is none: the names
@@ -652,7 +652,7 @@ static int plan_write(const sweep *s)
 /* The folders that results go through. */
 static int folders_make(const sweep *s)
 {
-    static const char *const name[] = {"claims", "work", "runs", "failed"};
+    static const char *const name[] = {"claims", "attempts", "runs", "failed"};
     char path[PATH_BYTES];
     mpm_fault fault;
     int k;

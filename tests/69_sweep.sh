@@ -10,7 +10,7 @@ rm -rf "$dir"
 mkdir -p "$dir"
 top=$(pwd)
 table=$dir/tasks.csv
-# An impact that notes its start, and whether its result was there by then. It runs in OUT/work/HASH.ATTEMPT.
+# An impact that notes its start, and whether its result was there by then. It runs in OUT/attempts/HASH.ATTEMPT.
 cat >"$dir/hit" <<END
 #!/bin/sh
 case \$1 in --help | --version) exec "$top/build/impact" "\$1" ;; esac
@@ -158,7 +158,7 @@ for name in $rounds; do
     check "... no finished one was" [ ! -e "$dir/$name/repeated" ]
     check "... collected" sweep $name --collect --keys $keys
     check "... to the bytes of one worker" same_results serial $name
-    check "... nothing half-done is left" [ -z "$(ls "$dir/$name/work")" ]
+    check "... nothing half-done is left" [ -z "$(ls "$dir/$name/attempts")" ]
 done
 
 # ---- asked to stop, it goes on from the checkpoint
@@ -197,7 +197,7 @@ if [ "$tasks" -ge 100 ]; then
     check "... its task was begun twice" begun revived 2
     check "... collected" build/sweep "$dir/long.csv" --out "$dir/revived" --collect --keys $keys
     check "... to the same numbers" cmp "$dir/whole/results.csv" "$dir/revived/results.csv"
-    check "... nothing half-done is left" [ -z "$(ls "$dir/revived/work")" ]
+    check "... nothing half-done is left" [ -z "$(ls "$dir/revived/attempts")" ]
 fi
 
 # ---- a study keeps the runs that it has made

@@ -132,7 +132,7 @@ submitted() { submit "$@" >"$dir/check.submit" 2>&1 || { cat "$dir/check.submit"
 queue_empty() { [ -z "$(squeue -h)" ]; }
 state() { scontrol show job "$job"_$long | sed -n 's/^ *JobState=\([A-Z]*\).*/\1/p'; }
 is() { [ "$(state)" = "$1" ] || { echo "it is $(state)"; false; }; }
-long_runs() { ls "$dir"/slurm/work/*/stdout.txt && is RUNNING; }
+long_runs() { ls "$dir"/slurm/attempts/*/stdout.txt && is RUNNING; }
 PATH=$PATH:/usr/sbin:/sbin
 if there munged && there slurmctld && there slurmd && there sbatch; then
     trap stop_slurm EXIT

@@ -87,6 +87,7 @@ static int prepare(many *m, particles_case *q, impact *s)
         return 1;
     }
     if (m->r.rank > 0) return ranks_all(&m->r, 1);
+    if (m->resume && !q->out.quiet) printf("no checkpoint in %s: from the start\n", q->out.folder);
     remove(file_in(q->out.folder, "ranks.json", path, sizeof path));
     return ranks_all(&m->r, output_begin(&q->out));
 }

@@ -122,7 +122,7 @@ typedef struct mpm_hdf5_desc {
     double scale;               /* of positions */
     const mpm_hdf5_field *fields; /* field_count of them, in every frame the same */
     int field_count;
-    double time;
+    double time;                /* [time], in the unit that ParaView shall show */
     int float32;                /* 1: reals as 32 bits, half the size; 0: as mpm_real. By the first frame for all */
     int gzip;                   /* 1 .. 9: packed, 9 best; 0: not. By the first frame for all */
     const char *note;           /* kept as an attribute of the file: what made it; or NULL. Of the first frame */
@@ -965,7 +965,7 @@ static inline void mpm__hdf5_given(hid_t points, const char *name, char text[MPM
 typedef struct mpm__hdf5_place {
     int64_t point, id, cell, points, cells, ids;
     uint8_t type; /* of its cells */
-    double time;
+    double time;                /* [time], in the unit that ParaView shall show */
 } mpm__hdf5_place;
 
 static inline int mpm__hdf5_place_of(const mpm__hdf5_file *f, hsize_t frame, mpm__hdf5_place *p)
